@@ -1,0 +1,93 @@
+# Two commands matter to a newcomer: `make serve` and `make test`. `make help` lists the rest.
+# Needs make and Python 3.11 or newer; everything else goes into .venv.
+
+# Plain assignments on purpose: some shells export HOST, and that must not decide where the service
+# listens. `make serve HOST=... PORT=...` still wins, and PLUMBLINE_HOST and PLUMBLINE_PORT are honoured.
+HOST =
+PORT =
+PYTHON =
+PYTEST_ARGS =
+
+VENV := .venv
+BIN := $(VENV)/bin
+PIP_INSTALL := $(BIN)/python -m pip install --disable-pip-version-check -c constraints.txt
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.SUFFIXES:
+.PHONY: help serve test lint format bench openapi docs figures constraints clean distclean
+
+help: ## list the commands
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' Makefile
+
+serve: $(VENV)/.installed-service ## install what is missing, compile the kernels, start the service on 127.0.0.1:8000
+	@exec $(BIN)/plumbline serve $(if $(HOST),--host "$(HOST)") $(if $(PORT),--port "$(PORT)")
+
+test: lint ## install what the tests need and run all of them
+	$(BIN)/plumbline warm
+	$(BIN)/python -m pytest -n auto $(PYTEST_ARGS)
+
+lint: $(VENV)/.installed-test ## static checks: ruff, mypy --strict, import contracts
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports --no-logo
+
+format: $(VENV)/.installed-test ## let ruff sort the imports and format the code
+	$(BIN)/ruff check --select I --fix .
+	$(BIN)/ruff format .
+
+bench: $(VENV)/.installed-bench ## Plumbline beside its peers on the same data: rewrites docs/benchmarks.md
+	$(BIN)/python -m benchmarks
+
+openapi: $(VENV)/.installed-test ## rewrite openapi/openapi.json from the application
+	$(BIN)/python -m service.openapi
+
+docs: $(VENV)/.installed-test ## run every example of README.md and docs/ and rewrite outputs and generated tables
+	$(BIN)/python -m tests.docs.refresh
+
+figures: $(VENV)/.installed-test ## draw the pictures of the documentation
+	$(BIN)/python -m examples.figures
+
+constraints: $(VENV)/.installed-bench ## pin the versions that are installed now
+	$(BIN)/python -m tests.project.closure --write
+
+clean: ## remove caches, compiled kernels among them
+	find . -name __pycache__ -type d -not -path './$(VENV)/*' -prune -exec rm -rf {} +
+	rm -rf .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache build dist
+
+distclean: clean ## clean, and remove the environment
+	rm -rf $(VENV)
+
+# The environment. A stamp per set of libraries; the sets contain one another.
+
+$(BIN)/python:
+	@found=; \
+	for candidate in $(if $(PYTHON),"$(PYTHON)",python3 python3.14 python3.13 python3.12 python3.11); do \
+	  if "$$candidate" -c 'import sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1; then \
+	    found=$$candidate; break; \
+	  fi; \
+	done; \
+	if [ -z "$$found" ]; then \
+	  echo "Plumbline needs Python 3.11 or newer, and none was found." >&2; \
+	  echo "Name one: make serve PYTHON=/path/to/python3.12" >&2; \
+	  exit 1; \
+	fi; \
+	if ! "$$found" -c 'import ensurepip, venv' >/dev/null 2>&1; then \
+	  echo "$$found has no venv module. On Debian and Ubuntu: apt-get install python3-venv" >&2; \
+	  exit 1; \
+	fi; \
+	echo "Creating $(VENV) with $$("$$found" --version)"; \
+	"$$found" -m venv $(VENV)
+
+$(VENV)/.installed-service: $(BIN)/python pyproject.toml constraints.txt
+	$(PIP_INSTALL) -e '.[service,pandas]'
+	@touch $@
+
+$(VENV)/.installed-test: $(BIN)/python pyproject.toml constraints.txt
+	$(PIP_INSTALL) -e '.[test]'
+	@touch $(VENV)/.installed-service $@
+
+$(VENV)/.installed-bench: $(BIN)/python pyproject.toml constraints.txt
+	$(PIP_INSTALL) -e '.[bench]'
+	@touch $(VENV)/.installed-service $(VENV)/.installed-test $@

@@ -1,0 +1,247 @@
+"""How the parts of a trend's picture are drawn on matplotlib axes; each part returns its legend entries."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.colors import to_hex, to_rgb
+from matplotlib.lines import Line2D
+
+from estimators.adapters.figure_sheet import Sheet, mdates
+from estimators.adapters.thinning import one_per_cell
+from estimators.arrays import IntArray
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from estimators.trends.trend import Trend
+
+# More markers than this are thinned to one per pixel, and are an image inside an SVG.
+MAX_MARKERS = 3_000
+# Labels at least this certain are drawn with so much of their colour, the rest being paper.
+_CERTAINTIES = ((0.9, 1.0), (0.6, 0.55), (0.0, 0.25))
+_DASHES = (0, (4, 2.5))
+_DOTS = (0, (1, 1.8))
+
+
+def draw_points(axes: Axes, sheet: Sheet) -> list[Artist]:
+    """Inliers as discs, outliers as crosses, weight 0 as grey dots; paler where the label is less sure."""
+    palette = sheet.palette
+    visible = (sheet.y >= sheet.low) & (sheet.y <= sheet.high)
+    kinds = (
+        (sheet.unused, ".", palette.quiet, "weight 0", 1.8),
+        (sheet.inlier, "o", palette.inlier, "inliers", 2.0),
+        (sheet.outlier, "x", palette.outlier, "outliers", 2.5),
+    )
+    entries: list[Artist] = []
+    for chosen, marker, color, name, layer in kinds:
+        total = int(np.count_nonzero(chosen))
+        if total:
+            size = _draw_markers(axes, sheet, np.flatnonzero(chosen & visible), marker, color, layer)
+            entries.append(_entry(f"{name} ({total:,})", marker=marker, color=color, markersize=size + 1))
+    least_of_all = _CERTAINTIES[0][0]
+    if bool(np.any(sheet.certainty[visible & ~sheet.unused] < least_of_all)):
+        pale = {
+            "markerfacecolor": _mixed(palette.inlier, palette.paper, 0.25),
+            "markeredgecolor": palette.inlier,
+        }
+        entries.append(_entry("paler: less sure", marker="o", markersize=5, **pale))
+    return entries
+
+
+def _draw_markers(axes: Axes, sheet: Sheet, rows: IntArray, marker: str, color: str, layer: float) -> float:
+    """Draw one kind of point in up to three shades and return the size of its markers."""
+    dense = rows.size > MAX_MARKERS
+    if dense:
+        rows = rows[one_per_cell(sheet.x[rows], sheet.y[rows], sheet.width_px, sheet.height_px)]
+    look: dict[str, Any] = _marker(marker, rows.size, sheet.small)
+    upper = np.inf
+    for least, strength in _CERTAINTIES:
+        here = rows[(sheet.certainty[rows] >= least) & (sheet.certainty[rows] < upper)]
+        upper = least
+        if not here.size:
+            continue
+        face = _mixed(color, sheet.palette.paper, strength)
+        outline = face if marker == "x" or dense else color
+        axes.plot(
+            sheet.x[here],
+            sheet.y[here],
+            linestyle="none",
+            rasterized=dense,
+            zorder=layer,
+            markerfacecolor=face,
+            markeredgecolor=outline,
+            **look,
+        )
+    return float(look["markersize"])
+
+
+def _marker(marker: str, count: int, small: bool) -> dict[str, Any]:
+    """Size that leaves single points apart: larger for few, a dot for very many."""
+    size = 5.0 if count <= 80 else 3.6 if count <= 500 else 2.6 if count <= MAX_MARKERS else 1.6
+    size *= 0.8 if small else 1.0
+    if marker == "x":
+        return {"marker": marker, "markersize": size + 0.6, "markeredgewidth": 1.3 if count <= 500 else 0.8}
+    return {"marker": marker, "markersize": size, "markeredgewidth": 0.6 if count <= MAX_MARKERS else 0.0}
+
+
+def draw_beyond(axes: Axes, sheet: Sheet) -> list[Artist]:
+    """Triangles at the edge where points lie beyond it, and how many there are."""
+    color = sheet.palette.outlier
+    total = 0
+    for beyond, marker, height in ((sheet.y > sheet.high, "^", 0.985), (sheet.y < sheet.low, "v", 0.015)):
+        x = sheet.x[beyond]
+        total += x.size
+        x = x[one_per_cell(x, np.zeros_like(x), max(sheet.width_px // 8, 1), 1)]
+        axes.plot(
+            x,
+            np.full(x.size, height),
+            transform=axes.get_xaxis_transform(),
+            linestyle="none",
+            marker=marker,
+            markersize=4.0,
+            markeredgewidth=0,
+            color=color,
+            zorder=4,
+        )
+    if not total:
+        return []
+    return [_entry(f"beyond the frame ({total:,})", marker="^", markersize=5, markeredgewidth=0, color=color)]
+
+
+def draw_lines(axes: Axes, trend: Trend, sheet: Sheet) -> list[Artist]:
+    """Trend over the data, dashed beyond them; what was predicted; the runner-up if it is nearly as good."""
+    ink, first, last = sheet.palette.ink, *trend.geometry.span
+    grid, value = sheet.curves.time, sheet.curves.value
+    x = sheet.clock.draw(grid)
+    inside = (grid >= first) & (grid <= last)
+    axes.plot(x[inside], value[inside], color=ink, linewidth=1.8, zorder=3)
+    entries: list[Artist] = [_entry("trend", linestyle="-", color=ink, linewidth=1.8)]
+    outside = [part for part in (grid <= first, grid >= last) if np.count_nonzero(part) > 1]
+    for part in outside:
+        axes.plot(x[part], value[part], color=ink, linewidth=1.5, linestyle=_DASHES, zorder=3)
+    if outside:
+        entries.append(_entry("extrapolated", linestyle=_DASHES, color=ink, linewidth=1.5))
+    entries += _draw_predicted(axes, trend, sheet)
+    entries += _draw_runner_up(axes, trend, sheet)
+    return entries
+
+
+def _draw_predicted(axes: Axes, trend: Trend, sheet: Sheet) -> list[Artist]:
+    if trend.prediction is None:
+        return []
+    internal = trend.axis.to_internal(trend.prediction.time)
+    known = np.isfinite(internal)
+    look: dict[str, Any] = {
+        "linestyle": "none",
+        "marker": "D",
+        "markersize": 4.5,
+        "markerfacecolor": sheet.palette.paper,
+        "markeredgecolor": sheet.palette.ink,
+    }
+    axes.plot(sheet.clock.draw(internal[known]), trend.prediction.value[known], zorder=3.5, **look)
+    return [_entry(f"predicted ({np.count_nonzero(known):,})", **look)]
+
+
+def _draw_runner_up(axes: Axes, trend: Trend, sheet: Sheet) -> list[Artist]:
+    other = trend.runner_up
+    if other is None or not other.equally_good:
+        return []
+    # The intercept holds at the answer's origin: the first time, or 0 for plain numbers.
+    origin = (
+        0.0 if isinstance(trend.origin, np.datetime64) else float(trend.origin) - float(trend.axis.origin)
+    )
+    value = other.parameters["intercept"] + other.parameters["slope"] * (sheet.curves.time - origin)
+    look: dict[str, Any] = {"color": sheet.palette.other, "linewidth": 1.4, "linestyle": _DOTS}
+    axes.plot(sheet.clock.draw(sheet.curves.time), value, zorder=2.8, **look)
+    return [_entry(f"runner-up ({other.inliers:,})", **look)]
+
+
+def draw_bands(axes: Axes, sheet: Sheet) -> list[Artist]:
+    """Confidence band of the trend inside the prediction band of new readings, where there are any."""
+    curves = sheet.curves
+    if not np.isfinite(curves.confidence_low).any():
+        return []
+    x = sheet.clock.draw(sheet.curves.time)
+    level = f"{100 * curves.level:g} %"
+    bands = (
+        (curves.confidence_low, curves.confidence_high, 0.55, 1.5, f"confidence band, {level}"),
+        (curves.prediction_low, curves.prediction_high, 0.16, 1.0, f"prediction band, {level}"),
+    )
+    color = sheet.palette.band
+    return [
+        axes.fill_between(x, low, high, color=color, alpha=alpha, linewidth=0, zorder=layer, label=label)
+        for low, high, alpha, layer, label in bands
+    ]
+
+
+def dress_axes(
+    axes: Axes, sheet: Sheet, heading: str, time_label: str | None, value_label: str | None
+) -> None:
+    """Limits, grid, ticks and names, with as little ink as possible."""
+    palette, size = sheet.palette, _text_size(sheet)
+    axes.set_facecolor(palette.paper)
+    axes.set_ylim(sheet.low, sheet.high)
+    x = sheet.clock.draw(sheet.curves.time)
+    margin = 0.02 * float(x[-1] - x[0])
+    axes.set_xlim(float(x[0]) - margin, float(x[-1]) + margin)
+    for side in ("top", "right", "left"):
+        axes.spines[side].set_visible(False)
+    axes.spines["bottom"].set_color(palette.quiet)
+    axes.grid(axis="y", color=palette.grid, linewidth=0.8)
+    axes.set_axisbelow(True)
+    axes.tick_params(axis="both", colors=palette.quiet, labelsize=size, length=0)
+    axes.tick_params(axis="x", length=3)
+    if sheet.clock.dates:
+        locator = mdates.AutoDateLocator(minticks=3, maxticks=5 if sheet.small else 8)
+        axes.xaxis.set_major_locator(locator)
+        axes.xaxis.set_major_formatter(mdates.ConciseDateFormatter(locator))
+    for label in (axes.xaxis.get_offset_text(), axes.yaxis.get_offset_text()):
+        label.set_color(palette.quiet)
+        label.set_fontsize(size)
+    # A dollar sign in a caller's text is a dollar sign: nothing is set as mathematics.
+    if heading:
+        axes.set_title(
+            heading, loc="left", color=palette.ink, fontsize=size + 1.5, fontweight="bold", parse_math=False
+        )
+    if name := time_label or sheet.clock.label:
+        axes.set_xlabel(name, color=palette.quiet, fontsize=size, loc="right", parse_math=False)
+    if value_label:
+        axes.set_ylabel(value_label, color=palette.quiet, fontsize=size, loc="top", parse_math=False)
+
+
+def draw_legend(figure: Figure, entries: list[Artist], sheet: Sheet) -> None:
+    """Legend below the axes, where it hides nothing, to be read row by row."""
+    columns = 2 if sheet.width_px < 380 else 3 if sheet.width_px < 620 else 4
+    # Matplotlib fills a legend column by column, the first columns being the longer ones.
+    rows, longer = divmod(len(entries), columns)
+    lengths = [rows + (column < longer) for column in range(columns)]
+    ordered = [entries[row * columns + column] for column in range(columns) for row in range(lengths[column])]
+    figure.legend(
+        handles=ordered,
+        loc="outside lower left",
+        ncols=columns,
+        frameon=False,
+        fontsize=_text_size(sheet) - 0.5,
+        labelcolor=sheet.palette.ink,
+        handlelength=1.8,
+        columnspacing=1.4,
+        borderaxespad=0.2,
+    )
+
+
+def _text_size(sheet: Sheet) -> float:
+    return 7.5 if sheet.small else 9.0
+
+
+def _entry(label: str, **look: Any) -> Line2D:
+    return Line2D([], [], label=label, **{"linestyle": "none", **look})
+
+
+def _mixed(color: str, paper: str, strength: float) -> str:
+    over, under = np.array(to_rgb(color)), np.array(to_rgb(paper))
+    red, green, blue = (strength * over + (1.0 - strength) * under).tolist()
+    return to_hex((red, green, blue))

@@ -1,0 +1,1 @@
+"""The RANSAC family: one loop, small policies (see :mod:`estimators.consensus.protocols`)."""

@@ -1,0 +1,1 @@
+"""Labels of the points, and the noise scale that labels imply."""

@@ -1,0 +1,1 @@
+"""Where minimal samples come from: one file per method, bound to data by :mod:`.draws`."""

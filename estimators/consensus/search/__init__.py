@@ -1,0 +1,1 @@
+"""Ways from data to a model: one file per kind of search."""

@@ -1,0 +1,104 @@
+"""Search of ``auto``: the threshold-free structure of :mod:`estimators.consensus.structure`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from estimators.arrays import FloatArray, InputError
+from estimators.consensus.found import Found, LinearData, OtherStructure, Scale
+from estimators.consensus.search.closed import OrdinaryLeastSquares
+from estimators.consensus.stopping import clean_probability
+from estimators.consensus.structure import kernel as slots
+from estimators.consensus.structure.finish import TABLE
+from estimators.options import RobustOptions
+from estimators.regression.loss import Loss, LossKind
+from estimators.result import Ledger, NoFit
+
+LEAST_POINTS = 4
+"""With fewer points no structure can be told from another (METHODS.md 13.4)."""
+
+_NO_WEIGHTS = np.empty(0)
+
+
+@dataclass(frozen=True, slots=True)
+class StructureSearch:
+    """Mixture with sticky labels over lines proposed by low-discrepancy pairs; no threshold, no seed."""
+
+    @property
+    def needs_threshold(self) -> bool:
+        """The noise scale is part of what is found."""
+        return False
+
+    def run(self, data: LinearData, scale: Scale, options: RobustOptions, seed: int) -> Found | NoFit:
+        """Find the trend of a series.
+
+        Parameters
+        ----------
+        data : LinearData
+            A line.
+        scale : Scale
+            A given sigma fixes the noise scale, a given threshold the labels.
+        options : RobustOptions
+        seed : int
+            Without effect: the search draws no random numbers.
+
+        Returns
+        -------
+        Found or NoFit
+            Least squares on all points where there are fewer than four, or where no line stands out.
+        """
+        if data.p != 2:
+            raise InputError("method", f"auto fits lines only; this model has {data.p} coefficients")
+        if data.n < LEAST_POINTS:
+            return OrdinaryLeastSquares().run(data, scale, options, seed)
+        n = data.n
+        root = _NO_WEIGHTS if data.weights is None else np.sqrt(data.weights)
+        weight = np.empty((1, TABLE + 1))
+        inlier = np.empty(n, dtype=np.bool_)
+        probability = np.empty(n)
+        residual = np.empty(n)
+        records = np.empty((1, slots.RECORD))
+        slots.fit_structures(
+            np.array([0, n]), data.t, data.y, root, np.array([scale.floor]), scale.sigma or 0.0,
+            scale.threshold or 0.0, options.threshold_sigmas, weight, inlier, probability, residual, records,
+        )  # fmt: skip
+        record = records[0]
+        if not record[slots.FOUND]:
+            return OrdinaryLeastSquares().run(data, scale, options, seed)
+        inliers = int(record[slots.REC_INLIERS])
+        drawn = int(record[slots.REC_PAIRS])
+        sigma = float(record[slots.REC_SIGMA])
+        clean = clean_probability(inliers, n, data.p)
+        return Found(
+            theta=np.array([record[slots.REC_LEVEL], record[slots.REC_SLOPE]]),
+            residual=residual,
+            inlier=inlier,
+            probability=probability,
+            sigma=sigma,
+            sigma_source=scale.sigma_source if scale.sigma is not None else "mixture",
+            threshold=float(record[slots.REC_THRESHOLD]),
+            threshold_source="sigma" if scale.threshold is None else scale.threshold_source,
+            loss=Loss(LossKind.tabulated, table=weight[0]),
+            ledger=Ledger(
+                drawn=drawn,
+                scored=int(record[slots.REC_CANDIDATES]),
+                point_evaluations=int(record[slots.REC_EVALUATIONS]),
+                optimizations=1,
+            ),
+            sampling_probability=float(-np.expm1(drawn * np.log1p(-min(clean, 1.0 - 1e-16)))),
+            search="sampled",
+            runner_up=_runner_up(record),
+        )
+
+
+def _runner_up(record: FloatArray) -> OtherStructure | None:
+    if not record[slots.REC_RUNNER]:
+        return None
+    return OtherStructure(
+        theta=np.array([record[slots.REC_RUNNER_LEVEL], record[slots.REC_RUNNER_SLOPE]]),
+        sigma=float(record[slots.REC_RUNNER_SIGMA]),
+        inliers=int(record[slots.REC_RUNNER_INLIERS]),
+        margin=float(record[slots.REC_RUNNER_MARGIN]),
+    )

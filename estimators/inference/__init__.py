@@ -1,0 +1,1 @@
+"""Honest uncertainty: intervals, serial correlation, probabilities per point, p-values."""

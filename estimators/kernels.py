@@ -1,0 +1,184 @@
+"""How compiled code is declared, cached and warmed.
+
+A *kernel* is an entry point into compiled code: it has one explicit signature, releases the GIL, is
+compiled (or read from the cache) at its first call or by :func:`warm`, and refuses other types. A
+*device* function is compiled into the kernels that call it.
+
+Numba stamps a cached kernel with the content of the one file it stands in, so that editing a device
+function in another file would leave a stale kernel behind. Here the stamp is the content of every file
+of the package that declares compiled code, and the cache may live on a read-only disk.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, Generic, ParamSpec, TypeVar, cast
+
+import numba
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+_PACKAGE = Path(__file__).resolve().parent
+_REGISTRY: list[Kernel[..., Any]] = []
+
+
+def cache_directory() -> Path:
+    """Directory of the compiled kernels: ``PLUMBLINE_CACHE_DIR``, else inside the package, else the user's cache.
+
+    Returns
+    -------
+    pathlib.Path
+        Not created by this call.
+    """
+    named = os.environ.get("PLUMBLINE_CACHE_DIR")
+    if named:
+        return Path(named)
+    inside = _PACKAGE / "__pycache__"
+    if os.access(inside if inside.exists() else _PACKAGE, os.W_OK):
+        return inside
+    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "plumbline"
+
+
+@functools.cache
+def source_stamp() -> str:
+    """Digest of every source file of the package that declares compiled code."""
+    digest = hashlib.sha256()
+    for path in sorted(_PACKAGE.rglob("*.py")):
+        text = path.read_bytes()
+        if b"kernels import" in text or path == Path(__file__).resolve():
+            digest.update(str(path.relative_to(_PACKAGE)).encode())
+            digest.update(text)
+    return digest.hexdigest()
+
+
+class _Locator(_CacheLocator):  # type: ignore[misc]  # numba's caching module is untyped
+    """Place and stamp of a cached kernel; writing is allowed to fail (read-only images)."""
+
+    def __init__(self, py_func: Callable[..., object], py_file: str) -> None:
+        self._line = py_func.__code__.co_firstlineno
+        self._file = py_file
+
+    def get_cache_path(self) -> str:
+        return str(cache_directory())
+
+    def get_source_stamp(self) -> str:
+        return source_stamp()
+
+    def get_disambiguator(self) -> str:
+        relative = Path(self._file).resolve().relative_to(_PACKAGE)
+        return f"{relative.with_suffix('').as_posix().replace('/', '.')}-{self._line}"
+
+    def ensure_cache_path(self) -> None:
+        try:
+            cache_directory().mkdir(parents=True, exist_ok=True)
+        except OSError:
+            return
+
+    @classmethod
+    def from_function(cls, py_func: Callable[..., object], py_file: str) -> _Locator:
+        return cls(py_func, py_file)
+
+
+class _CacheImpl(CompileResultCacheImpl):  # type: ignore[misc]
+    _locator_classes = (_Locator,)
+
+
+class _Cache(FunctionCache):  # type: ignore[misc]
+    _impl_class = _CacheImpl
+
+
+class Kernel(Generic[P, R]):
+    """One compiled entry point. Call it like the function it wraps.
+
+    Parameters
+    ----------
+    function : callable
+        The Python source of the kernel, in numba's subset.
+    signature : str
+        Numba signature; arrays that are only read should be declared read-only by :func:`ro`.
+    """
+
+    def __init__(self, function: Callable[P, R], signature: object) -> None:
+        functools.update_wrapper(self, function)
+        self.name = f"{function.__module__}.{function.__name__}"
+        self._signature = signature
+        self._dispatcher: Any = numba.njit(nogil=True)(function)
+        self._compiled: Callable[P, R] | None = None
+
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
+        return (self._compiled or self.load())(*args, **kwargs)
+
+    def load(self) -> Callable[P, R]:
+        """Compile the kernel or read it from the cache; later calls cost nothing."""
+        if self._compiled is None:
+            dispatcher = self._dispatcher
+            try:
+                dispatcher._cache = _Cache(dispatcher.py_func)
+                dispatcher.compile(self._signature)
+            except OSError:
+                # A cache that can be neither written nor read must not keep anybody from an answer.
+                dispatcher._cache = type(numba.njit(_nothing)._cache)()
+                dispatcher.compile(self._signature)
+            dispatcher.disable_compile()
+            self._compiled = cast("Callable[P, R]", dispatcher)
+        return self._compiled
+
+    @property
+    def is_loaded(self) -> bool:
+        """Whether the kernel can run without compiling."""
+        return self._compiled is not None
+
+    @property
+    def came_from_cache(self) -> bool:
+        """Whether loading read the compiled code from disk."""
+        return bool(self._compiled is not None and sum(self._dispatcher.stats.cache_hits.values()))
+
+
+def _nothing() -> None:
+    """Carry the type of numba's null cache."""
+
+
+def kernel(signature: object) -> Callable[[Callable[P, R]], Kernel[P, R]]:
+    """Declare a compiled entry point with one explicit signature."""
+
+    def declare(function: Callable[P, R]) -> Kernel[P, R]:
+        declared = Kernel(function, signature)
+        _REGISTRY.append(declared)
+        return declared
+
+    return declare
+
+
+def device(function: Callable[P, R]) -> Callable[P, R]:
+    """Declare a function that compiled code may call; it is compiled into its callers."""
+    return cast("Callable[P, R]", numba.njit(nogil=True)(function))
+
+
+def ro(dtype: Any, ndim: int = 1) -> Any:
+    """Numba type of a contiguous array that the kernel only reads."""
+    return numba.types.Array(dtype, ndim, "C", readonly=True)
+
+
+def warm() -> Iterator[tuple[int, int, str]]:
+    """Load every declared kernel, one per step.
+
+    Yields
+    ------
+    tuple of (int, int, str)
+        Kernels loaded so far, kernels in all, name of the one just loaded.
+    """
+    total = len(_REGISTRY)
+    for done, entry in enumerate(_REGISTRY, start=1):
+        entry.load()
+        yield done, total, entry.name
+
+
+def is_warm() -> bool:
+    """Whether every declared kernel is loaded."""
+    return all(entry.is_loaded for entry in _REGISTRY)

@@ -1,0 +1,271 @@
+"""What every answer shares: estimates with uncertainty, labels per point, the consensus ledger, notices, and NoFit.
+
+Plain frozen data; nothing here computes. The service mirrors these classes on the wire (DESIGN: "The
+verbs and their answers").
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any, Literal
+
+from estimators.arrays import BoolArray, CodeArray, FloatArray, Reason
+
+
+class NoticeCode(StrEnum):
+    """Typed warnings: each has one meaning and one sentence, in :data:`NOTICE_MEANINGS`."""
+
+    few_points = "few_points"
+    no_redundancy = "no_redundancy"
+    ambiguous_structure = "ambiguous_structure"
+    low_inlier_ratio = "low_inlier_ratio"
+    low_sampling_probability = "low_sampling_probability"
+    serial_correlation = "serial_correlation"
+    quantised_values = "quantised_values"
+    zero_noise = "zero_noise"
+    constant_values = "constant_values"
+    duplicate_times = "duplicate_times"
+    unsorted_times = "unsorted_times"
+    missing_values = "missing_values"
+    invalid_values = "invalid_values"
+    float_nanoseconds = "float_nanoseconds"
+    extrapolation = "extrapolation"
+    not_robust = "not_robust"
+
+
+NOTICE_MEANINGS: Mapping[NoticeCode, str] = {
+    NoticeCode.few_points: "So few points that outliers can hardly be told from inliers.",
+    NoticeCode.no_redundancy: "The line passes through the points exactly; there is no uncertainty to report.",
+    NoticeCode.ambiguous_structure: "Another trend explains the series nearly as well; both are reported.",
+    NoticeCode.low_inlier_ratio: "Fewer than half of the points follow the trend.",
+    NoticeCode.low_sampling_probability: "The hypotheses drawn may have missed a clean sample.",
+    NoticeCode.serial_correlation: "Neighbouring residuals are correlated; intervals are widened accordingly.",
+    NoticeCode.quantised_values: "The values are rounded coarsely compared with their noise.",
+    NoticeCode.zero_noise: "The points lie exactly on the trend; the noise scale is set by the arithmetic.",
+    NoticeCode.constant_values: "All values are equal.",
+    NoticeCode.duplicate_times: "Several points share a time; they are all used.",
+    NoticeCode.unsorted_times: "The times were not in order; the answer keeps the order of the input.",
+    NoticeCode.missing_values: "Rows with a missing time or value take no part in the fit.",
+    NoticeCode.invalid_values: "Rows with an infinite time or value take no part in the fit.",
+    NoticeCode.float_nanoseconds: "Epoch nanoseconds as floats are 256 ns apart; send integers or datetimes.",
+    NoticeCode.extrapolation: "Some predictions lie outside the time span of the data.",
+    NoticeCode.not_robust: "This method is offered for comparison; outliers can move it.",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Notice:
+    """A typed warning in an answer.
+
+    Attributes
+    ----------
+    code : NoticeCode
+    message : str
+        A sentence for people.
+    detail : mapping
+        Numbers behind the sentence (JSON-safe).
+    """
+
+    code: NoticeCode
+    message: str
+    detail: Mapping[str, Any] = field(default_factory=dict)
+
+
+def notice(code: NoticeCode, **detail: Any) -> Notice:
+    """Notice with the standard sentence of its code."""
+    return Notice(code, NOTICE_MEANINGS[code], detail)
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """A number with its uncertainty.
+
+    Attributes
+    ----------
+    value : float
+    stderr, low, high : float or None
+        Standard error and confidence limits; None where the data leave no way to tell.
+    """
+
+    value: float
+    stderr: float | None
+    low: float | None
+    high: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Points:
+    """One entry per input row, in input order.
+
+    Attributes
+    ----------
+    inlier : ndarray of bool, shape (n,)
+    probability : ndarray of float64, shape (n,)
+        Probability that the row follows the trend; NaN for rows outside the fit (``null`` on the wire).
+    residual : ndarray of float64, shape (n,)
+        Value minus trend; NaN for rows outside the fit.
+    reason_codes : ndarray of uint8, shape (n,)
+        Codes of :class:`estimators.arrays.Reason`.
+    """
+
+    inlier: BoolArray
+    probability: FloatArray
+    residual: FloatArray
+    reason_codes: CodeArray
+
+    @property
+    def reason(self) -> list[str]:
+        """Reasons by name, one per input row."""
+        names = [member.name for member in Reason]
+        return [names[code] for code in self.reason_codes]
+
+
+@dataclass(frozen=True, slots=True)
+class Ledger:
+    """What the search did: it reproduces the reported sampling probability.
+
+    Attributes
+    ----------
+    drawn : int
+        Minimal samples drawn (or enumerated), degenerate ones included.
+    degenerate : int
+        Samples refused before solving.
+    invalid : int
+        Models refused after solving.
+    scored : int
+        Models scored, completely or until a lossless bound refused them.
+    point_evaluations : int
+        Residuals computed while scoring.
+    optimizations : int
+        Runs of local optimisation.
+    """
+
+    drawn: int = 0
+    degenerate: int = 0
+    invalid: int = 0
+    scored: int = 0
+    point_evaluations: int = 0
+    optimizations: int = 0
+
+
+SearchKind = Literal["sampled", "exhaustive", "certified", "closed"]
+
+
+@dataclass(frozen=True, slots=True)
+class Consensus:
+    """What the algorithm did to get to the answer.
+
+    Attributes
+    ----------
+    method : str
+        Preset.
+    n : int
+        Points that took part.
+    inliers : int
+    inlier_ratio : float
+    threshold : float
+        Largest |residual| of an inlier, in units of the values (before weighting).
+    threshold_source : {"given", "sigma"}
+    sigma : float
+        Noise scale of an inlier of mean weight, in units of the values.
+    sigma_source : {"given", "mixture", "residuals", "s-estimate", "floor"}
+    ledger : Ledger
+    sampling_probability : float or None
+        Probability that at least one all-inlier sample was among those drawn, exact (hypergeometric;
+        METHODS.md 2.2). It is not the probability that the fit is right. None for closed methods.
+    search : {"sampled", "exhaustive", "certified", "closed"}
+        ``closed``: the method draws no samples.
+    seed : int
+    """
+
+    method: str
+    n: int
+    inliers: int
+    inlier_ratio: float
+    threshold: float
+    threshold_source: str
+    sigma: float
+    sigma_source: str
+    ledger: Ledger
+    sampling_probability: float | None
+    search: SearchKind
+    seed: int
+
+
+@dataclass(frozen=True, slots=True)
+class Uncertainty:
+    """How the intervals of an answer were made.
+
+    Attributes
+    ----------
+    method : str
+        ``"effective-n"``, ``"sandwich"``, ``"jackknife"`` or ``"none"`` (nothing left to estimate it from).
+    level : float
+        Confidence level of every interval in the answer.
+    effective_n : float or None
+        Number of independent inliers that the correlated ones are worth.
+    lag1 : float or None
+        Bias-corrected lag-1 correlation of the residuals' scores.
+    dof : float or None
+        Degrees of freedom of Student's t.
+    """
+
+    method: str
+    level: float
+    effective_n: float | None
+    lag1: float | None
+    dof: float | None
+
+
+class NoFitReason(StrEnum):
+    """Why there is no model."""
+
+    no_data = "no_data"
+    too_few_points = "too_few_points"
+    constant_time = "constant_time"
+    no_consensus = "no_consensus"
+    too_large = "too_large"
+
+
+@dataclass(frozen=True, slots=True)
+class NoFit:
+    """No model, and why. Falsy, so that ``if trend:`` reads as it should.
+
+    Attributes
+    ----------
+    reason : NoFitReason
+    message : str
+        A sentence that says how to mend it.
+    points : Points
+        One entry per input row, as in an answer.
+    notices : tuple of Notice
+    """
+
+    reason: NoFitReason
+    message: str
+    points: Points
+    notices: tuple[Notice, ...] = ()
+
+    def __bool__(self) -> bool:
+        return False
+
+    def summary(self) -> str:
+        """Text for people."""
+        return f"No fit ({self.reason.value}): {self.message}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON-safe form."""
+        return {
+            "fit": None,
+            "reason": self.reason.value,
+            "message": self.message,
+            "points": {"reason": self.points.reason},
+            "notices": [notice_to_dict(item) for item in self.notices],
+        }
+
+
+def notice_to_dict(item: Notice) -> dict[str, Any]:
+    """JSON-safe form of a notice."""
+    return {"code": item.code.value, "message": item.message, "detail": dict(item.detail)}

@@ -1,0 +1,153 @@
+"""The facts of an answer as sentences: points, noise, threshold, search, intervals, runner-up, notices.
+
+The chance that a clean sample was drawn is worded as just that: it is not confidence in the fit
+(METHODS.md 12).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
+
+from estimators.result import Consensus, Notice, NoticeCode, Uncertainty
+from estimators.trends.units import PLAIN, TimeUnit, moment_text, natural_unit, percent, significant
+
+if TYPE_CHECKING:
+    from estimators.trends.trend import RunnerUp, Trend
+
+ADVICE: Mapping[NoticeCode, str] = {
+    NoticeCode.few_points: "Add measurements, or give sigma if the noise is known.",
+    NoticeCode.no_redundancy: "Add at least one more point to learn how well the line is known.",
+    NoticeCode.ambiguous_structure: "Look at the picture; fit a part of the series, or give a threshold.",
+    NoticeCode.low_inlier_ratio: "Look at the picture first; give sigma if the noise is known.",
+    NoticeCode.low_sampling_probability: "Raise max_hypotheses, or use method auto.",
+    NoticeCode.serial_correlation: "Nothing to do; a longer series narrows them, a denser one hardly.",
+    NoticeCode.quantised_values: "Send the values with all the digits that the instrument has.",
+    NoticeCode.zero_noise: "Check that these are measurements; the intervals say nothing about real noise.",
+    NoticeCode.constant_values: "Check that the source still measures.",
+    NoticeCode.duplicate_times: "Remove copies of the same reading, if that is what they are.",
+    NoticeCode.unsorted_times: "Nothing to do.",
+    NoticeCode.missing_values: "Nothing to do, unless there are more than you expect.",
+    NoticeCode.invalid_values: "Find out where the infinities come from.",
+    NoticeCode.float_nanoseconds: "The digits lost in reading them as floats do not come back.",
+    NoticeCode.extrapolation: "Believe them as far as you expect the trend to continue.",
+    NoticeCode.not_robust: "Use method auto for an answer that outliers do not move.",
+}
+"""What the reader can do about each notice."""
+
+_SIGMA_SOURCES: Mapping[str, str] = {
+    "given": "given",
+    "mixture": "estimated with the inliers and the outliers together",
+    "residuals": "estimated from the residuals",
+    "s-estimate": "an S-estimate",
+    "floor": "the least that the arithmetic allows",
+}
+
+
+def slope_unit(trend: Trend) -> TimeUnit:
+    """Choose the unit of time in which the slope reads best."""
+    if trend.axis.kind != "datetime":
+        return PLAIN
+    first, last = trend.geometry.span
+    return natural_unit(last - first)
+
+
+def facts(trend: Trend) -> Iterable[tuple[str, str]]:
+    """Yield label and sentence of every fact beside the parameters.
+
+    Parameters
+    ----------
+    trend : Trend
+
+    Yields
+    ------
+    tuple of (str, str)
+    """
+    consensus = trend.consensus
+    yield "Points", _points_sentence(consensus, trend.points.inlier.size - consensus.n)
+    source = _SIGMA_SOURCES.get(consensus.sigma_source, consensus.sigma_source)
+    yield "Noise", f"sigma {significant(consensus.sigma)} ({source})"
+    within = significant(consensus.threshold)
+    yield "Threshold", f"an inlier is within {within} of the trend ({_threshold_source(consensus)})"
+    quality = [f"R² {significant(trend.r2)}"] if trend.r2 is not None else []
+    quality += [f"RMSE {significant(trend.rmse)}"] if trend.rmse is not None else []
+    if quality:
+        yield "On inliers", ", ".join(quality)
+    yield "Intervals", _uncertainty_sentence(trend.uncertainty, consensus)
+    yield "Search", _search_sentence(trend.model, consensus)
+    if trend.runner_up is not None:
+        yield "Runner-up", _runner_up_sentence(trend.runner_up, slope_unit(trend), moment_text(trend.origin))
+
+
+def notice_lines(notices: Iterable[Notice]) -> Iterable[tuple[str, str]]:
+    """Yield what each notice says, with its numbers, and what to do about it.
+
+    Parameters
+    ----------
+    notices : iterable of Notice
+
+    Yields
+    ------
+    tuple of (str, str)
+    """
+    for item in notices:
+        detail = ", ".join(
+            f"{key.replace('_', ' ')} {significant(value) if isinstance(value, float) else value}"
+            for key, value in item.detail.items()
+            if isinstance(value, (int, float, str))
+        )
+        message = f"{item.message.rstrip('.')} ({detail})." if detail else item.message
+        yield message, ADVICE.get(item.code, "")
+
+
+def _points_sentence(consensus: Consensus, left_out: int) -> str:
+    share = percent(consensus.inlier_ratio)
+    text = f"{consensus.inliers:,} of {consensus.n:,} follow the trend ({share})"
+    if not left_out:
+        return text
+    return f"{text}; {left_out:,} more {'row has' if left_out == 1 else 'rows have'} no part in it"
+
+
+def _threshold_source(consensus: Consensus) -> str:
+    if consensus.threshold_source == "given" or consensus.sigma <= 0.0:
+        return consensus.threshold_source
+    return f"{significant(consensus.threshold / consensus.sigma, 3)} sigma"
+
+
+def _uncertainty_sentence(uncertainty: Uncertainty, consensus: Consensus) -> str:
+    dof = uncertainty.dof
+    if uncertainty.method == "none" or dof is None:
+        return "none: the points leave nothing to estimate them from"
+    law = "the normal law" if math.isinf(dof) else f"t with {significant(dof)} degrees of freedom"
+    text = f"{100 * uncertainty.level:g} %, {uncertainty.method}, {law}"
+    if uncertainty.effective_n is None:
+        return text
+    worth = significant(uncertainty.effective_n)
+    text += f"; {consensus.inliers:,} inliers count as {worth} independent ones"
+    return text if uncertainty.lag1 is None else f"{text} (lag-1 correlation {uncertainty.lag1:.2f})"
+
+
+def _search_sentence(model: str, consensus: Consensus) -> str:
+    sample = "pair" if model == "line" else "sample"
+    drawn = consensus.ledger.drawn
+    if consensus.search == "closed":
+        return "none: the method draws no samples"
+    if consensus.search == "certified":
+        return "certified: no other model has a better consensus"
+    if consensus.search == "exhaustive":
+        return f"exhaustive: all {drawn:,} {sample}s were tried"
+    text = f"{drawn:,} {sample}s drawn"
+    if consensus.sampling_probability is None:
+        return text
+    return f"{text}; chance that a clean {sample} was among them: {percent(consensus.sampling_probability)}"
+
+
+def _runner_up_sentence(other: RunnerUp, unit: TimeUnit, origin: str) -> str:
+    slope = significant(other.parameters["slope"] * unit.seconds)
+    level = significant(other.parameters["intercept"])
+    verdict = "nearly as good" if other.equally_good else "clearly weaker"
+    return (
+        f"slope {slope}{unit.per}, level {level} at {origin}: {other.inliers:,} points follow it instead, "
+        f"sigma {significant(other.sigma)}; {verdict}"
+    )

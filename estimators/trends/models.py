@@ -1,0 +1,43 @@
+"""The shapes a trend can have: one row each, read by the service, the command line and the documentation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+
+@dataclass(frozen=True, slots=True)
+class TrendModel:
+    """A trend shape.
+
+    Attributes
+    ----------
+    name : str
+        What callers pass as ``model``.
+    title : str
+    equation : str
+    parameters : tuple of str
+        Names in the answer.
+    summary : str
+    """
+
+    name: str
+    title: str
+    equation: str
+    parameters: tuple[str, ...]
+    summary: str
+
+
+_ROWS = (
+    TrendModel(
+        "line",
+        "Straight line",
+        "y = intercept + slope * (t - origin)",
+        ("slope", "intercept"),
+        "A constant rate of change.",
+    ),
+)
+
+MODELS: Mapping[str, TrendModel] = MappingProxyType({row.name: row for row in _ROWS})
+"""Trend shapes by name."""

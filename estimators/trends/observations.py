@@ -1,0 +1,84 @@
+"""What was seen on the way and the caller should know: the typed notices of an answer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from estimators.arrays import Reason
+from estimators.consensus.found import Found
+from estimators.consensus.presets import Preset
+from estimators.inference.sandwich import LineUncertainty
+from estimators.noise.resolution import Quantisation
+from estimators.result import Notice, NoticeCode, notice
+from estimators.series import Series
+from estimators.trends.trend import RunnerUp
+
+FEW_POINTS = 8
+NOTABLE_CORRELATION = 0.25
+LEAST_SAMPLING_PROBABILITY = 0.95
+COARSE_QUANTUM = 1.0
+"""Quantum in noise scales from which rounding is worth a notice."""
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """What notices are drawn from."""
+
+    series: Series
+    preset: Preset
+    found: Found
+    inliers: int
+    spread: LineUncertainty | None
+    quantisation: Quantisation
+    floor: float
+    runner_up: RunnerUp | None
+
+
+def input_notices(series: Series) -> tuple[Notice, ...]:
+    """Notices about the input alone."""
+    notices: list[Notice] = []
+    counts = np.bincount(series.reasons, minlength=len(Reason))
+    if counts[Reason.missing]:
+        notices.append(notice(NoticeCode.missing_values, rows=int(counts[Reason.missing])))
+    if counts[Reason.invalid]:
+        notices.append(notice(NoticeCode.invalid_values, rows=int(counts[Reason.invalid])))
+    if not series.was_sorted:
+        notices.append(notice(NoticeCode.unsorted_times))
+    if series.duplicate_times:
+        notices.append(notice(NoticeCode.duplicate_times, points=series.duplicate_times))
+    if series.float_nanoseconds:
+        notices.append(notice(NoticeCode.float_nanoseconds))
+    return tuple(notices)
+
+
+def collect_notices(seen: Evidence) -> tuple[Notice, ...]:
+    """All notices of an answer, those about the input first."""
+    notices = list(input_notices(seen.series))
+    n = seen.series.n
+    found = seen.found
+    if not seen.preset.robust:
+        notices.append(notice(NoticeCode.not_robust, method=seen.preset.name))
+    if n == 2:
+        notices.append(notice(NoticeCode.no_redundancy))
+    elif n < FEW_POINTS:
+        notices.append(notice(NoticeCode.few_points, points=n))
+    if float(seen.series.y.min()) == float(seen.series.y.max()):
+        notices.append(notice(NoticeCode.constant_values))
+    elif n > 2 and found.sigma <= 4.0 * seen.floor and not seen.quantisation.is_quantised:
+        notices.append(notice(NoticeCode.zero_noise, sigma=found.sigma))
+    if seen.quantisation.is_quantised and seen.quantisation.quantum > COARSE_QUANTUM * found.sigma:
+        notices.append(notice(NoticeCode.quantised_values, quantum=seen.quantisation.quantum))
+    if 2 * seen.inliers < n:
+        notices.append(notice(NoticeCode.low_inlier_ratio, inlier_ratio=seen.inliers / n))
+    drawn = found.sampling_probability
+    if drawn is not None and drawn < LEAST_SAMPLING_PROBABILITY:
+        notices.append(notice(NoticeCode.low_sampling_probability, sampling_probability=drawn))
+    if seen.spread is not None and seen.spread.lag1 > NOTABLE_CORRELATION:
+        notices.append(
+            notice(NoticeCode.serial_correlation, lag1=seen.spread.lag1, effective_n=seen.spread.effective_n)
+        )
+    if seen.runner_up is not None and seen.runner_up.equally_good:
+        notices.append(notice(NoticeCode.ambiguous_structure, **dict(seen.runner_up.parameters)))
+    return tuple(notices)

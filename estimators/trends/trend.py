@@ -1,0 +1,265 @@
+"""The answer of a trend fit: :class:`Trend` and its parts.
+
+Frozen data with the few methods people expect on it: prediction, a summary, and the ways out
+(``to_dict``, ``to_frame``, ``plot``). How the numbers come about is in :mod:`estimators.trends.fit`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from estimators.arrays import ArrayLike, FloatArray, InputError
+from estimators.inference.intervals import student_quantile
+from estimators.result import (
+    Consensus,
+    Estimate,
+    Notice,
+    NoticeCode,
+    Points,
+    Uncertainty,
+    notice,
+    notice_to_dict,
+)
+from estimators.time_axis import TimeAxis, as_moments
+from estimators.trends import presentation
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True, slots=True)
+class Prediction:
+    """The trend at requested times, with two bands.
+
+    Attributes
+    ----------
+    time : ndarray, shape (k,)
+        As asked for (numbers or datetime64[ns]).
+    value : ndarray of float64, shape (k,)
+        The trend.
+    confidence_low, confidence_high : ndarray of float64, shape (k,)
+        Where the *trend* lies; NaN where the data leave no way to tell.
+    prediction_low, prediction_high : ndarray of float64, shape (k,)
+        Where a *new inlier* of mean weight will lie.
+    level : float
+    notices : tuple of Notice
+        ``extrapolation`` where a time lies outside of the data.
+    """
+
+    time: np.ndarray[Any, Any]
+    value: FloatArray
+    confidence_low: FloatArray
+    confidence_high: FloatArray
+    prediction_low: FloatArray
+    prediction_high: FloatArray
+    level: float
+    notices: tuple[Notice, ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON-safe columns."""
+        return presentation.prediction_to_dict(self)
+
+
+@dataclass(frozen=True, slots=True)
+class RunnerUp:
+    """The best trend among the points that the answer calls outliers.
+
+    Attributes
+    ----------
+    parameters : mapping of str to float
+        Same names and units as the answer's.
+    inliers : int
+        Points that follow it and not the answer.
+    sigma : float
+        Its noise scale.
+    equally_good : bool
+        Whether the data hardly prefer the answer to it.
+    """
+
+    parameters: Mapping[str, float]
+    inliers: int
+    sigma: float
+    equally_good: bool
+
+
+@dataclass(frozen=True, slots=True)
+class LineGeometry:
+    """The fitted line in centred form, from which bands are computed without loss of digits.
+
+    Attributes
+    ----------
+    center : float
+        Time, since ``axis.origin``, at which level and slope are uncorrelated.
+    level, slope : float
+        Value at the center; change per unit of time.
+    level_variance, slope_variance : float
+        NaN where unknown.
+    sigma : float
+    span : tuple of float
+        First and last time of the data, since ``axis.origin``.
+    """
+
+    center: float
+    level: float
+    slope: float
+    level_variance: float
+    slope_variance: float
+    sigma: float
+    span: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Trend:
+    """A robust trend through a time series.
+
+    Attributes
+    ----------
+    model : str
+        ``"line"``.
+    parameters : mapping of str to Estimate
+        ``"slope"`` per unit of time (per second for points in time) and ``"intercept"``, the value at
+        ``origin``.
+    origin : float or numpy.datetime64
+        Where the intercept is taken: the first time, or 0 for plain numbers.
+    points : Points
+        One entry per input row, in input order.
+    consensus : Consensus
+        What the algorithm did.
+    uncertainty : Uncertainty
+        How the intervals were made.
+    p_value : float or None
+        Of "the slope is zero", valid after selection (METHODS.md 12).
+    r2, rmse : float or None
+        On inliers; r2 is None where the inliers do not vary.
+    runner_up : RunnerUp or None
+    notices : tuple of Notice
+    prediction : Prediction or None
+        At the times asked for with the fit.
+    time, values : ndarray
+        The caller's series as numbers or datetime64[ns], in input order, for frames and pictures.
+    """
+
+    model: str
+    parameters: Mapping[str, Estimate]
+    origin: float | np.datetime64
+    points: Points
+    consensus: Consensus
+    uncertainty: Uncertainty
+    p_value: float | None
+    r2: float | None
+    rmse: float | None
+    runner_up: RunnerUp | None
+    notices: tuple[Notice, ...]
+    axis: TimeAxis
+    geometry: LineGeometry
+    time: np.ndarray[Any, Any] = field(repr=False)
+    values: FloatArray = field(repr=False)
+    prediction: Prediction | None = None
+
+    def predict(self, times: ArrayLike, level: float | None = None) -> Prediction:
+        """Trend, confidence band and prediction band at given times.
+
+        Parameters
+        ----------
+        times : array_like, shape (k,)
+            Of the same kind as the series.
+        level : float, optional
+            Confidence level; default that of the fit.
+
+        Returns
+        -------
+        Prediction
+
+        Raises
+        ------
+        InputError
+            If the times are of another kind, or the level is not between 0 and 1.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from estimators import fit_trend
+        >>> trend = fit_trend(np.arange(20.0), 3.0 + 2.0 * np.arange(20.0))
+        >>> float(round(trend.predict([30.0]).value[0], 6))
+        63.0
+        """
+        wanted = self.uncertainty.level if level is None else float(level)
+        if not 0 < wanted < 1:
+            raise InputError("level", "must lie between 0 and 1, both excluded")
+        asked = np.atleast_1d(as_moments(times) if self.axis.kind == "datetime" else np.asarray(times))
+        internal = np.atleast_1d(self.axis.to_internal(asked))
+        line = self.geometry
+        value = line.level + line.slope * (internal - line.center)
+        trend_variance = line.level_variance + line.slope_variance * (internal - line.center) ** 2
+        quantile = student_quantile(wanted, self.uncertainty.dof)
+        half = quantile * np.sqrt(trend_variance)
+        wide = quantile * np.sqrt(trend_variance + line.sigma**2)
+        outside = (internal < line.span[0]) | (internal > line.span[1])
+        notices = (
+            (notice(NoticeCode.extrapolation, times=int(np.count_nonzero(outside))),)
+            if np.any(outside)
+            else ()
+        )
+        return Prediction(
+            time=asked,
+            value=value,
+            confidence_low=value - half,
+            confidence_high=value + half,
+            prediction_low=value - wide,
+            prediction_high=value + wide,
+            level=wanted,
+            notices=notices,
+        )
+
+    def summary(self) -> str:
+        """Text for people: the trend, its uncertainty, the outliers and the warnings."""
+        return presentation.summary(self)
+
+    def to_dict(self, *, points: bool = True) -> dict[str, Any]:
+        """JSON-safe form, the same as the service answers.
+
+        Parameters
+        ----------
+        points : bool
+            Whether to include the columns per input row.
+        """
+        return presentation.trend_to_dict(self, points=points)
+
+    def to_frame(self) -> pd.DataFrame:
+        """One row per input row: time, value, fit, bands, inlier, probability, residual, reason.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed (extra ``[pandas]``).
+        """
+        return presentation.trend_to_frame(self)
+
+    def plot(self, **style: Any) -> Figure:
+        """Picture of the series, the trend, its bands and the outliers (extra ``[plot]``).
+
+        Parameters
+        ----------
+        **style
+            ``width_px``, ``height_px``, ``theme`` (``"light"`` or ``"dark"``) and ``title``; see
+            :func:`estimators.adapters.plotting.trend_figure`.
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is not installed (extra ``[plot]``).
+        """
+        from estimators.adapters.plotting import trend_figure  # noqa: PLC0415
+
+        return trend_figure(self, **style)
+
+    def _repr_html_(self) -> str:
+        return presentation.to_html(self)
+
+
+__all__ = ["LineGeometry", "Prediction", "RunnerUp", "Trend", "notice_to_dict"]

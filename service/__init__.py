@@ -1,0 +1,1 @@
+"""Plumbline over HTTP: a thin shell of FastAPI around :mod:`estimators`."""

@@ -1,0 +1,51 @@
+"""``/healthz``, ``/readyz`` and ``/metrics``: what orchestrators and monitors ask."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Request, Response
+from fastapi.responses import PlainTextResponse
+
+from service.compute import Warmth
+from service.errors import Problem, ProblemType
+from service.observability.metrics import METRICS_MEDIA_TYPE, Metrics
+from service.schemas.answers import HealthAnswer, ReadyAnswer
+from service.schemas.problems import problem_responses
+
+router = APIRouter(tags=["operations"])
+
+
+@router.get("/healthz", summary="Is the process alive", operation_id="health")
+async def health() -> HealthAnswer:
+    """Answers as long as the process does."""
+    return HealthAnswer(status="ok")
+
+
+@router.get(
+    "/readyz",
+    summary="Does the service take work",
+    operation_id="ready",
+    responses=problem_responses(ProblemType.not_ready),
+)
+async def ready(request: Request) -> ReadyAnswer:
+    """200 once all compiled code is loaded, so that no fit waits for a compiler; 503 until then."""
+    warmth: Warmth = request.app.state.warmth
+    if warmth.is_ready:
+        return ReadyAnswer(status="ready", kernels=warmth.total)
+    if warmth.has_failed:
+        raise Problem(ProblemType.not_ready, "compiled code could not be loaded; the log tells why")
+    detail = f"{warmth.loaded} of {warmth.total or 'all'} compiled functions are loaded"
+    raise Problem(ProblemType.not_ready, detail, headers={"Retry-After": "1"})
+
+
+@router.get(
+    "/metrics",
+    summary="Metrics for Prometheus",
+    operation_id="metrics",
+    response_class=PlainTextResponse,
+    response_model=None,
+    responses={200: {"content": {"text/plain": {"schema": {"type": "string"}}}, "description": "Metrics."}},
+)
+async def metrics(request: Request) -> Response:
+    """Report counts, durations and queue depth in the text format of Prometheus."""
+    counted: Metrics = request.app.state.metrics
+    return Response(counted.exposition(), headers={"Content-Type": METRICS_MEDIA_TYPE})

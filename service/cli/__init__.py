@@ -1,0 +1,157 @@
+"""The command ``plumbline``: fit a file, serve over HTTP, warm the kernels, list methods and models.
+
+Only the signatures are here; each command's work is in a module of its own and is imported when it runs,
+so that ``--help`` answers at once. Exit codes: 0 done, 1 the data determine no trend, 2 bad input.
+"""
+
+# The imports inside of the commands are the point of this module.
+# ruff: noqa: PLC0415
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+__all__ = ["app"]
+
+app = typer.Typer(
+    name="plumbline",
+    help="Robust trends from contaminated measurements.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        typer.echo(f"plumbline {version('plumbline')}")
+        raise typer.Exit
+
+
+@app.callback()
+def plumbline(
+    _version: Annotated[
+        bool,
+        typer.Option("--version", help="Show the version and exit.", is_eager=True, callback=_print_version),
+    ] = False,
+) -> None:
+    """Robust trends from contaminated measurements."""
+
+
+@app.command()
+def fit(
+    file: Annotated[
+        str, typer.Argument(metavar="FILE", help="Table of times and values; - for standard input.")
+    ],
+    time: Annotated[
+        str | None,
+        typer.Option(metavar="COL", help="Column of times, by name or position. Default: guessed."),
+    ] = None,
+    value: Annotated[
+        str | None,
+        typer.Option(metavar="COL", help="Column of values, by name or position. Default: guessed."),
+    ] = None,
+    weight: Annotated[
+        str | None,
+        typer.Option(metavar="COL", help="Column of precisions (1/variance). Default: 'weight', if any."),
+    ] = None,
+    delimiter: Annotated[
+        str | None,
+        typer.Option(metavar="CHAR", help="What separates cells, or the word tab. Default: found out."),
+    ] = None,
+    time_unit: Annotated[
+        Literal["s", "ms", "us", "ns"] | None, typer.Option(help="Unit of times that are numbers since 1970.")
+    ] = None,
+    since: Annotated[str | None, typer.Option(metavar="T", help="Leave out rows before this time.")] = None,
+    until: Annotated[str | None, typer.Option(metavar="T", help="Leave out rows after this time.")] = None,
+    model: Annotated[str, typer.Option(help="Shape of the trend; see 'plumbline models'.")] = "line",
+    method: Annotated[str, typer.Option(help="How it is found; see 'plumbline methods'.")] = "auto",
+    threshold: Annotated[
+        float | None, typer.Option(help="Largest distance of an inlier from the trend. Default: estimated.")
+    ] = None,
+    sigma: Annotated[float | None, typer.Option(help="Noise scale of an inlier. Default: estimated.")] = None,
+    level: Annotated[float, typer.Option(help="Confidence level of intervals and bands.")] = 0.95,
+    seed: Annotated[int, typer.Option(help="Seed of the search.")] = 0,
+    predict: Annotated[
+        list[str] | None, typer.Option(metavar="T", help="Time at which to predict; may be repeated.")
+    ] = None,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="PATH", help="Write a picture (.png or .svg).", dir_okay=False)
+    ] = None,
+    theme: Annotated[Literal["light", "dark"], typer.Option(help="Colours of the picture.")] = "light",
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the answer as JSON, as the service sends it.")
+    ] = False,
+    csv: Annotated[bool, typer.Option("--csv", help="Print one CSV row per input row.")] = False,
+) -> None:
+    """Fit a trend to a table (CSV and its relatives) and say how sure it is."""
+    from service.cli.fitting import FitRequest, run_fit
+
+    run_fit(
+        FitRequest(
+            file=file,
+            time=time,
+            value=value,
+            weight=weight,
+            delimiter=delimiter,
+            time_unit=time_unit,
+            since=since,
+            until=until,
+            model=model,
+            method=method,
+            threshold=threshold,
+            sigma=sigma,
+            level=level,
+            seed=seed,
+            predict=tuple(predict or ()),
+            plot=plot,
+            theme=theme,
+            output="json" if json else "csv" if csv else "text",
+        ),
+        one_format=not (json and csv),
+    )
+
+
+@app.command()
+def serve(
+    host: Annotated[
+        str | None, typer.Option(help="Address to listen on. Default: PLUMBLINE_HOST, else 127.0.0.1.")
+    ] = None,
+    port: Annotated[
+        int | None, typer.Option(min=0, max=65535, help="Port. Default: PLUMBLINE_PORT, else 8000.")
+    ] = None,
+) -> None:
+    """Serve fits over HTTP; settings come from PLUMBLINE_* variables."""
+    from service.cli.serving import run_server
+
+    run_server(host, port)
+
+
+@app.command()
+def warm() -> None:
+    """Compile the kernels now, so that no first request waits for them."""
+    from service.cli.warming import warm_kernels
+
+    warm_kernels()
+
+
+@app.command()
+def methods() -> None:
+    """List the methods and when to use each."""
+    from service.cli.catalogue import show_methods
+
+    show_methods()
+
+
+@app.command()
+def models() -> None:
+    """List the shapes of trends."""
+    from service.cli.catalogue import show_models
+
+    show_models()

@@ -1,0 +1,38 @@
+"""``plumbline methods`` and ``plumbline models``: the registries as tables."""
+
+from __future__ import annotations
+
+from rich import box
+from rich.table import Table
+from rich.text import Text
+
+import estimators
+from service.cli.streams import answers
+
+
+def show_methods() -> None:
+    """Print every method with what it does and when to use it."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_lines=True, header_style="dim")
+    table.add_column("method", style="bold cyan", no_wrap=True)
+    table.add_column("what it does", ratio=3)
+    table.add_column("when to use it", ratio=3)
+    table.add_column("source", style="dim", ratio=2)
+    for row in estimators.methods().values():
+        what = Text.assemble((row.title, "bold"), "\n", row.summary)
+        if not row.robust:
+            what.append("\nNot robust: outliers can move it.", style="yellow")
+        table.add_row(Text(row.name), what, Text(row.when_to_use), Text(row.source))
+    answers().print(table)
+
+
+def show_models() -> None:
+    """Print every model with its equation and parameters."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, header_style="dim")
+    table.add_column("model", style="bold cyan", no_wrap=True)
+    table.add_column("equation", no_wrap=True)
+    table.add_column("parameters")
+    table.add_column("what it is", ratio=1)
+    for row in estimators.models().values():
+        what = Text.assemble((row.title, "bold"), "\n", row.summary)
+        table.add_row(Text(row.name), Text(row.equation), Text(", ".join(row.parameters)), what)
+    answers().print(table)

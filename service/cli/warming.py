@@ -1,0 +1,28 @@
+"""Compile the kernels, or load them from the cache, and show how far it has come."""
+
+from __future__ import annotations
+
+import time
+
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+import estimators  # noqa: F401  # declares every kernel
+from estimators import kernels
+from service.cli.streams import messages
+
+
+def warm_kernels() -> None:
+    """Load every kernel; a bar on standard error if it is a terminal, plain lines if not."""
+    console = messages()
+    started = time.perf_counter()
+    done = 0
+    if console.is_terminal:
+        columns = (TextColumn("Compiling"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+        with Progress(*columns, console=console, transient=True) as progress:
+            task = progress.add_task("kernels", total=None)
+            for done, total, _ in kernels.warm():
+                progress.update(task, completed=done, total=total)
+    else:
+        for done, total, name in kernels.warm():
+            console.print(f"Loaded {done} of {total}: {name}", markup=False, soft_wrap=True)
+    console.print(f"{done} kernels ready in {time.perf_counter() - started:.1f} s.", markup=False)

@@ -1,0 +1,239 @@
+"""JSON in (msgspec, columns straight into arrays) and out (orjson, straight from arrays).
+
+A body is skimmed once for its keys, each column's text is decoded by a decoder of its own type, and only
+what remains, a handful of scalars, is validated by pydantic. Integers stay integers: epoch nanoseconds do
+not fit into a float64.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import msgspec
+import numpy as np
+import numpy.typing as npt
+import orjson
+
+from estimators import Trend
+from estimators.trends.presentation import fitted_values
+from service.codecs.arguments import read_arguments
+from service.codecs.columns import Columns, TimeForm, Times, from_epoch
+from service.codecs.times import parse_iso
+from service.errors import FieldError, Problem, ProblemType, invalid_value, unknown_fields
+from service.schemas.options import (
+    AnswerQuery,
+    FitArguments,
+    TimeUnit,
+    TrendOptions,
+    TrendQuery,
+)
+
+COLUMN_FIELDS = ("time", "value", "weight", "predict")
+FIELDS = (*COLUMN_FIELDS, *FitArguments.model_fields)
+
+
+class Key:
+    """A key of an object. Equal keys are distinct objects, so that a repeated one is seen, not lost."""
+
+    __slots__ = ("name",)
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+
+
+def _make_key(kind: type, value: Any) -> Any:
+    if kind is Key and isinstance(value, str):
+        return Key(value)
+    raise NotImplementedError
+
+
+_OBJECT = msgspec.json.Decoder(dict[Key, msgspec.Raw], dec_hook=_make_key)
+_NUMBERS = msgspec.json.Decoder(list[float | None])
+_TIMES = msgspec.json.Decoder(list[int | float | str | None])
+_ANY = msgspec.json.Decoder(Any)
+
+_BYTE = re.compile(r"\(byte (\d+)\)")
+_ROW = re.compile(r"\$\[(\d+)\]")
+_OPEN_COLUMN = re.compile(rb'"(time|value|weight|predict)"\s*:\s*\[[^\]]*\Z')
+
+
+def read_json(body: bytes, query: TrendQuery) -> tuple[Columns, FitArguments]:
+    """Columns and arguments of a JSON body.
+
+    Raises
+    ------
+    Problem
+        If the body is not JSON, holds unknown or repeated keys, or a value of the wrong type.
+    """
+    misplaced = query.csv_only()
+    if misplaced:
+        raise Problem(
+            ProblemType.unknown_field,
+            "with a JSON body these belong into the body: " + ", ".join(misplaced),
+            errors=[FieldError(name, "belongs into the body") for name in misplaced],
+        )
+    fields = _read_object(body, FIELDS, "")
+    arguments = read_arguments(
+        {name: _scalar(raw, name) for name, raw in fields.items() if name not in COLUMN_FIELDS}
+    )
+    for name in ("time", "value"):
+        if name not in fields:
+            raise invalid_value(name, "is required")
+    time, form = _read_times(fields["time"], "time", arguments.time_unit)
+    predict: Times | None = None
+    if not _is_null(fields.get("predict")):
+        predict, asked_form = _read_times(fields["predict"], "predict", arguments.time_unit, form)
+        if asked_form != form:
+            raise invalid_value("predict", "must be written in the same form as time")
+    weight = None if _is_null(fields.get("weight")) else _read_numbers(fields["weight"], "weight")
+    return Columns(time, _read_numbers(fields["value"], "value"), weight, predict, form), arguments
+
+
+def write_json(trend: Trend, columns: Columns, query: AnswerQuery) -> bytes:
+    """``Trend.to_dict()`` with times in the form they came and columns written from their arrays."""
+    answer = trend.to_dict(points=False)
+    if columns.form.kind == "epoch":
+        answer["origin"] = columns.form.render(np.array([trend.origin], dtype="datetime64[ns]"))[0]
+    if columns.predict is not None:
+        answer["prediction"]["time"] = columns.form.render(columns.predict)
+    if query.points:
+        answer["points"] = {
+            "time": columns.form.render(columns.time),
+            "fit": fitted_values(trend),
+            "inlier": trend.points.inlier,
+            "probability": trend.points.probability,
+            "residual": trend.points.residual,
+            "reason": trend.points.reason,
+        }
+    return dumps(answer)
+
+
+def dumps(answer: Any) -> bytes:
+    """JSON of a dict with arrays in it; NaN becomes null, points in time end in Z."""
+    return orjson.dumps(answer, option=orjson.OPT_SERIALIZE_NUMPY | orjson.OPT_NAIVE_UTC | orjson.OPT_UTC_Z)
+
+
+def _read_object(text: bytes | msgspec.Raw, known: tuple[str, ...], prefix: str) -> dict[str, msgspec.Raw]:
+    """Texts of an object's values by key; ``prefix`` names where it stands in errors."""
+    try:
+        pairs = _OBJECT.decode(text)
+    except msgspec.ValidationError as error:
+        if prefix:
+            raise invalid_value(prefix.rstrip("."), "must be an object") from error
+        raise Problem(ProblemType.malformed_body, "the body must be a JSON object with columns") from error
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise _malformed(bytes(text), error) from error
+    names = [key.name for key in pairs]
+    unknown = [prefix + name for name in names if name not in known]
+    if unknown:
+        raise unknown_fields(unknown, known, prefix.rstrip(".") or "this request")
+    repeated = next((name for place, name in enumerate(names) if name in names[:place]), None)
+    if repeated is not None:
+        raise invalid_value(prefix + repeated, "is given twice; give it once")
+    return {key.name: text for key, text in pairs.items()}
+
+
+def _malformed(body: bytes, error: Exception) -> Problem:
+    """Problem of a body that is not JSON; a NaN or an infinity, the usual cause, is named with its row."""
+    if isinstance(error, RecursionError):
+        return Problem(ProblemType.malformed_body, "the JSON is nested too deep")
+    if isinstance(error, UnicodeDecodeError):
+        return Problem(ProblemType.malformed_body, "the JSON is not valid UTF-8")
+    found = _BYTE.search(str(error))
+    if found is None:
+        return Problem(ProblemType.malformed_body, "the JSON ends before it is complete")
+    place = int(found[1])
+    column = _OPEN_COLUMN.search(body, 0, place)
+    if column is not None and re.match(
+        rb"-?(NaN|Inf|nan|inf)", body[max(place - 1, 0) : place + 4].lstrip(b"[, \n\t")
+    ):
+        return invalid_value(
+            column[1].decode(),
+            "NaN and Infinity are not JSON; send null for a missing value",
+            body.count(b",", column.end(1), place),
+        )
+    return Problem(ProblemType.malformed_body, f"the JSON is broken at byte {place}")
+
+
+def _scalar(raw: msgspec.Raw, name: str) -> Any:
+    """Python value of an argument; nested options are checked for repeated keys as the body is."""
+    if name == "options":
+        known = tuple(TrendOptions.model_fields)
+        return {
+            key: _scalar(text, f"options.{key}") for key, text in _read_object(raw, known, "options.").items()
+        }
+    try:
+        return _ANY.decode(raw)
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise invalid_value(
+            name, "cannot be read; numbers must fit into 64 bits and text be UTF-8"
+        ) from error
+
+
+def _is_null(raw: msgspec.Raw | None) -> bool:
+    return raw is None or bytes(memoryview(raw)[:4]) == b"null"
+
+
+def _read_numbers(raw: msgspec.Raw, name: str) -> npt.NDArray[np.float64]:
+    return np.array(_decode_column(_NUMBERS, raw, name), dtype=np.float64)
+
+
+def _read_times(
+    raw: msgspec.Raw, name: str, unit: TimeUnit | None, like: TimeForm | None = None
+) -> tuple[Times, TimeForm]:
+    """Read a column of times and the form it came in; ``like`` decides where the column itself cannot."""
+    column = _decode_column(_TIMES, raw, name)
+    kinds = set(map(type, column)) - {type(None)}
+    if str in kinds or (not kinds and like == TimeForm("iso")):
+        if unit is not None:
+            raise invalid_value("time_unit", "is for epoch numbers; leave it out with ISO 8601 times")
+        if len(kinds) > 1:
+            row = next(row for row, item in enumerate(column) if isinstance(item, int | float))
+            raise invalid_value(name, "mixes text and numbers; write all times in one form", row)
+        return parse_iso(column, name), TimeForm("iso")
+    numbers = _as_numbers(column, kinds, name)
+    if unit is None:
+        return numbers, TimeForm("number")
+    return from_epoch(numbers, unit, name), TimeForm("epoch", unit)
+
+
+def _as_numbers(
+    column: list[Any], kinds: set[type], name: str
+) -> npt.NDArray[np.float64] | npt.NDArray[np.int64]:
+    """Numbers as int64 where all are integers, so that nothing is rounded."""
+    if kinds != {int} or None in column:
+        try:
+            return np.array(column, dtype=np.float64)
+        except OverflowError:
+            row = next(row for row, item in enumerate(column) if isinstance(item, int) and abs(item) >= 2**63)
+            raise invalid_value(name, "is too large a number", row) from None
+    try:
+        return np.array(column, dtype=np.int64)
+    except OverflowError:
+        row = next(row for row, item in enumerate(column) if not -(2**63) <= item < 2**63)
+        raise invalid_value(name, "integers must fit into 64 bits", row) from None
+
+
+def _decode_column(decoder: msgspec.json.Decoder[Any], raw: msgspec.Raw, name: str) -> list[Any]:
+    try:
+        column: list[Any] = decoder.decode(raw)
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise _bad_column(error, name) from error
+    return column
+
+
+def _bad_column(error: Exception, name: str) -> Problem:
+    """Problem of a column that holds something else than it should; msgspec says where, never what."""
+    text = str(error)
+    found = _ROW.search(text)
+    row = int(found[1]) if found else None
+    if isinstance(error, UnicodeDecodeError):
+        return invalid_value(name, "holds text that is not valid UTF-8")
+    if "out of range" in text:
+        return invalid_value(name, "is too large a number for a 64-bit float", row)
+    if row is None:
+        return invalid_value(name, "must be an array")
+    wanted = "a number, ISO 8601 text or null" if name in ("time", "predict") else "a number or null"
+    got = text.partition("got `")[2].partition("`")[0]
+    return invalid_value(name, f"expected {wanted}, got {got or 'something else'}", row)

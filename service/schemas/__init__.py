@@ -1,0 +1,1 @@
+"""Pydantic models of options and answers; they make the OpenAPI document. Arrays never pass through them."""

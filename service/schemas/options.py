@@ -1,0 +1,252 @@
+"""What a caller may ask of a fit, besides the data.
+
+:class:`FitArguments` are the keys of a JSON body beside its columns; :class:`TrendQuery` are the query
+parameters: always those that shape the answer, and for CSV bodies the fit's arguments too. Both are made of
+the same annotated types, so that they cannot drift apart; the names of methods and models come from the
+registries.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic_core import PydanticCustomError
+
+import estimators
+from estimators import RobustOptions
+
+DEFAULTS = RobustOptions()
+METHOD_NAMES = tuple(estimators.methods())
+MODEL_NAMES = tuple(estimators.models())
+
+#: Prefix that carries the fields of ``options`` into the query string.
+OPTION_PREFIX = "options."
+
+TimeUnit = Literal["s", "ms", "us", "ns"]
+AnswerFormat = Literal["json", "csv", "svg", "png"]
+Theme = Literal["light", "dark"]
+
+
+def _known_method(name: str) -> str:
+    return _one_of(name, METHOD_NAMES)
+
+
+def _known_model(name: str) -> str:
+    return _one_of(name, MODEL_NAMES)
+
+
+def _one_of(name: str, known: tuple[str, ...]) -> str:
+    if name not in known:
+        raise PydanticCustomError("unknown_name", "must be one of: {names}", {"names": ", ".join(known)})
+    return name
+
+
+Method = Annotated[
+    str,
+    AfterValidator(_known_method),
+    Field(
+        description="How the trend is found; `/v1/methods` describes each.",
+        json_schema_extra={"enum": list(METHOD_NAMES)},
+    ),
+]
+Model = Annotated[
+    str,
+    AfterValidator(_known_model),
+    Field(
+        description="Shape of the trend; `/v1/models` describes each.",
+        json_schema_extra={"enum": list(MODEL_NAMES)},
+    ),
+]
+Threshold = Annotated[
+    float,
+    Field(
+        gt=0,
+        allow_inf_nan=False,
+        description="Largest distance of an inlier, in units of the values. Default: estimated.",
+    ),
+]
+Sigma = Annotated[
+    float,
+    Field(
+        gt=0,
+        allow_inf_nan=False,
+        description="Noise scale of an inlier, in units of the values. Default: estimated.",
+    ),
+]
+Level = Annotated[
+    float, Field(gt=0, lt=1, allow_inf_nan=False, description="Confidence level of every interval and band.")
+]
+Seed = Annotated[
+    int, Field(ge=0, le=2**63 - 1, description="Seed of the search; the same seed gives the same bytes.")
+]
+Unit = Annotated[
+    TimeUnit,
+    Field(
+        description="Unit of epoch numbers in `time` and `predict` (since 1970-01-01T00:00:00Z). "
+        "Without it numbers are plain numbers."
+    ),
+]
+Confidence = Annotated[
+    float,
+    Field(
+        gt=0,
+        lt=1,
+        allow_inf_nan=False,
+        description="Wanted probability of at least one sample without outliers.",
+    ),
+]
+MaxHypotheses = Annotated[
+    int, Field(ge=1, le=10_000_000, description="Upper bound on minimal samples drawn.")
+]
+MinHypotheses = Annotated[
+    int,
+    Field(ge=1, le=10_000_000, description="Lower bound on minimal samples drawn, at most max_hypotheses."),
+]
+WorkBudget = Annotated[
+    int,
+    Field(
+        ge=0,
+        le=10**10,
+        description="Enumerate all minimal samples when they cost at most this many residuals.",
+    ),
+]
+ThresholdSigmas = Annotated[
+    float,
+    Field(
+        ge=1,
+        le=10,
+        allow_inf_nan=False,
+        description="Inlier threshold in noise scales where none is given.",
+    ),
+]
+AcceptableInliers = Annotated[
+    int, Field(ge=3, description="Consensus at which `fischler-bolles` stops. Default: half of the points.")
+]
+CorrectSerialCorrelation = Annotated[
+    bool, Field(description="Widen intervals by the effective sample size where residuals are correlated.")
+]
+
+
+class TrendOptions(BaseModel):
+    """Settings of the search; the defaults serve every method."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    confidence: Confidence = DEFAULTS.confidence
+    max_hypotheses: MaxHypotheses = DEFAULTS.max_hypotheses
+    min_hypotheses: MinHypotheses = DEFAULTS.min_hypotheses
+    work_budget: WorkBudget = DEFAULTS.work_budget
+    threshold_sigmas: ThresholdSigmas = DEFAULTS.threshold_sigmas
+    acceptable_inliers: AcceptableInliers | None = DEFAULTS.acceptable_inliers
+    correct_serial_correlation: CorrectSerialCorrelation = DEFAULTS.correct_serial_correlation
+
+
+class FitArguments(BaseModel):
+    """Keys of a JSON body beside its columns."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    time_unit: Unit | None = None
+    model: Model = "line"
+    method: Method = "auto"
+    threshold: Threshold | None = None
+    sigma: Sigma | None = None
+    level: Level = 0.95
+    seed: Seed = 0
+    options: TrendOptions = TrendOptions()
+
+
+class TrendRequest(FitArguments):
+    """A series and what to make of it. Columns have one entry per row; null is a missing value.
+
+    This class documents the body; its columns are decoded straight into arrays by the JSON codec.
+    """
+
+    time: Annotated[
+        list[int | float | str | None],
+        Field(
+            min_length=1,
+            description="Numbers, epoch numbers (say their unit in `time_unit`; integers stay exact), or "
+            "ISO 8601 with an offset or Z. ISO 8601 without an offset is taken as UTC. Any order.",
+        ),
+    ]
+    value: Annotated[
+        list[float | None], Field(min_length=1, description="One value per time; null where it is missing.")
+    ]
+    weight: Annotated[
+        list[float] | None,
+        Field(description="Precision (1/variance up to scale) per value, not negative; 0 leaves a row out."),
+    ] = None
+    predict: Annotated[
+        list[int | float | str] | None,
+        Field(description="Times at which to predict, in the form of `time`."),
+    ] = None
+
+
+class AnswerQuery(BaseModel):
+    """Query parameters that shape the answer, whatever the body's media type."""
+
+    format: Annotated[
+        AnswerFormat | None, Field(description="Format of the answer; takes precedence over `Accept`.")
+    ] = None
+    points: Annotated[bool, Field(description="Whether a JSON answer includes the columns per row.")] = True
+    width_px: Annotated[int, Field(ge=200, le=4000, description="Width of a picture.")] = 800
+    height_px: Annotated[int, Field(ge=150, le=4000, description="Height of a picture.")] = 450
+    theme: Annotated[Theme, Field(description="Colours of a picture.")] = "light"
+    title: Annotated[
+        str | None, Field(max_length=120, pattern=r"^[^\x00-\x1f\x7f]*$", description="Title of a picture.")
+    ] = None
+
+
+class TrendQuery(AnswerQuery):
+    """Query parameters of ``POST /v1/trends``; those of the fit are for CSV, JSON bodies carry them."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    time_column: Annotated[str | None, Field(description="CSV: column of the times (default `time`).")] = None
+    value_column: Annotated[str | None, Field(description="CSV: column of the values (default `value`).")] = (
+        None
+    )
+    weight_column: Annotated[
+        str | None, Field(description="CSV: column of the weights (default `weight`, if there is one).")
+    ] = None
+    predict: Annotated[
+        list[str] | None,
+        Field(
+            description="CSV: times at which to predict, in the form of the time column; "
+            "repeat it or separate by commas."
+        ),
+    ] = None
+    time_unit: Unit | None = None
+    model: Model | None = None
+    method: Method | None = None
+    threshold: Threshold | None = None
+    sigma: Sigma | None = None
+    level: Level | None = None
+    seed: Seed | None = None
+    confidence: Annotated[Confidence | None, Field(alias="options.confidence")] = None
+    max_hypotheses: Annotated[MaxHypotheses | None, Field(alias="options.max_hypotheses")] = None
+    min_hypotheses: Annotated[MinHypotheses | None, Field(alias="options.min_hypotheses")] = None
+    work_budget: Annotated[WorkBudget | None, Field(alias="options.work_budget")] = None
+    threshold_sigmas: Annotated[ThresholdSigmas | None, Field(alias="options.threshold_sigmas")] = None
+    acceptable_inliers: Annotated[AcceptableInliers | None, Field(alias="options.acceptable_inliers")] = None
+    correct_serial_correlation: Annotated[
+        CorrectSerialCorrelation | None, Field(alias="options.correct_serial_correlation")
+    ] = None
+
+    def csv_only(self) -> list[str]:
+        """Parameters given that only a CSV body allows, by their names on the wire."""
+        names = self.model_fields_set - set(AnswerQuery.model_fields)
+        return sorted(TrendQuery.model_fields[name].alias or name for name in names)
+
+    def fit_arguments(self) -> dict[str, Any]:
+        """Nest the fit's arguments that were given as in a JSON body."""
+        given = self.model_dump(by_alias=True, include=self.model_fields_set, exclude_none=True)
+        arguments = {name: value for name, value in given.items() if name in FitArguments.model_fields}
+        options = {
+            name.removeprefix(OPTION_PREFIX): value
+            for name, value in given.items()
+            if name.startswith(OPTION_PREFIX)
+        }
+        return arguments | {"options": options} if options else arguments

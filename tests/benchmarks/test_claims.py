@@ -1,0 +1,35 @@
+import math
+
+import pytest
+
+from benchmarks.cells import Cell
+from benchmarks.claims import Claim, check_claims, claim_cells, measure_claims
+from benchmarks.kinds import KINDS
+
+
+@pytest.mark.parametrize(
+    ("reached", "holds"), [(1.9, "yes"), (2.0, "yes"), (2.7, "within error"), (3.1, "no"), (math.nan, "no")]
+)
+def test_a_claim_missed_by_less_than_two_standard_errors_is_undecided(reached: float, holds: str) -> None:
+    assert Claim("failure %", reached, 0.0, 2.0, 0.5).holds == holds
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "wanted"), [(0.0, 2.0, "≤ 2"), (0.91, 1.0, "≥ 0.91"), (0.93, 0.98, "0.93 to 0.98")]
+)
+def test_a_claim_says_what_it_wants(low: float, high: float, wanted: str) -> None:
+    assert Claim("", 1.0, low, high, 0.0).wanted == wanted
+
+
+def test_every_cell_has_at_least_ten_true_inliers() -> None:
+    cells = claim_cells(1)
+    assert min(round((1 - cell.share) * cell.n) for cell in cells) >= 10
+    assert Cell("burst", 50, 0.8, 1) in cells
+    assert Cell("burst", 50, 0.9, 1) not in cells
+
+
+def test_a_few_draws_of_the_bed_are_enough_to_check_every_claim() -> None:
+    results = measure_claims(1, seed=3, jobs=1, families=False)
+    claims = check_claims(results)
+    assert {kind for kind, _, _ in results} > set(KINDS)
+    assert len({claim.text for claim in claims}) == len(claims) == 14

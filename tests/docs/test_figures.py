@@ -1,0 +1,31 @@
+from pathlib import Path
+
+from examples import disk_usage, figures
+from tests.docs.comparison import difference
+
+
+def test_the_example_data_are_what_their_script_makes() -> None:
+    assert disk_usage.FILE.read_text() == disk_usage.to_csv(disk_usage.simulate())
+
+
+def test_the_trend_in_the_example_covers_the_growth_that_was_simulated() -> None:
+    slope = figures.fit_disk().parameters["slope"]
+    assert slope.low is not None
+    assert slope.high is not None
+    assert slope.low * 86_400 <= disk_usage.GROWTH_GB_PER_DAY <= slope.high * 86_400
+
+
+def test_every_committed_picture_is_one_that_the_script_draws() -> None:
+    committed = {path.name for path in figures.IMAGES.iterdir() if not path.name.startswith("benchmark")}
+    assert committed == set(figures.PICTURES)
+
+
+def test_the_committed_pictures_are_what_the_code_draws_today(tmp_path: Path) -> None:
+    for drawn in figures.draw(tmp_path):
+        found = difference((figures.IMAGES / drawn.name).read_text(), drawn.read_text())
+        assert found is None, f"{drawn.name}: {found}; `make figures` draws it again"
+
+
+def test_the_pictures_are_light_enough_for_a_page() -> None:
+    heavy = [path.name for path in figures.IMAGES.iterdir() if path.stat().st_size > 150_000]
+    assert heavy == []
