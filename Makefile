@@ -21,35 +21,35 @@ help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' Makefile
 
 serve: $(VENV)/.installed-service ## install what is missing, compile the kernels, start the service on 127.0.0.1:8000
-	@exec $(BIN)/plumbline serve $(if $(HOST),--host "$(HOST)") $(if $(PORT),--port "$(PORT)")
+	@PLUMBLINE_LOG_FORMAT="$${PLUMBLINE_LOG_FORMAT:-console}" exec $(BIN)/plumbline serve $(if $(HOST),--host "$(HOST)") $(if $(PORT),--port "$(PORT)")
 
 test: lint ## install what the tests need and run all of them
 	$(BIN)/plumbline warm
 	$(BIN)/python -m pytest -n auto $(PYTEST_ARGS)
 
-lint: $(VENV)/.installed-test ## static checks: ruff, mypy --strict, import contracts
+lint: $(VENV)/.installed-all ## static checks: ruff, mypy --strict, import contracts
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo
 
-format: $(VENV)/.installed-test ## let ruff sort the imports and format the code
+format: $(VENV)/.installed-all ## let ruff sort the imports and format the code
 	$(BIN)/ruff check --select I --fix .
 	$(BIN)/ruff format .
 
-bench: $(VENV)/.installed-bench ## Plumbline beside its peers on the same data: rewrites docs/benchmarks.md
+bench: $(VENV)/.installed-all ## Plumbline beside its peers on the same data: rewrites docs/benchmarks.md
 	$(BIN)/python -m benchmarks
 
-openapi: $(VENV)/.installed-test ## rewrite openapi/openapi.json from the application
+openapi: $(VENV)/.installed-all ## rewrite openapi/openapi.json from the application
 	$(BIN)/python -m service.openapi
 
-docs: $(VENV)/.installed-test ## run every example of README.md and docs/ and rewrite outputs and generated tables
+docs: $(VENV)/.installed-all ## run every example of README.md and docs/ and rewrite outputs and generated tables
 	$(BIN)/python -m tests.docs.refresh
 
-figures: $(VENV)/.installed-test ## draw the pictures of the documentation
+figures: $(VENV)/.installed-all ## draw the pictures of the documentation
 	$(BIN)/python -m examples.figures
 
-constraints: $(VENV)/.installed-bench ## pin the versions that are installed now
+constraints: $(VENV)/.installed-all ## pin the versions that are installed now
 	$(BIN)/python -m tests.project.closure --write
 
 clean: ## remove caches, compiled kernels among them
@@ -59,7 +59,7 @@ clean: ## remove caches, compiled kernels among them
 distclean: clean ## clean, and remove the environment
 	rm -rf $(VENV)
 
-# The environment. A stamp per set of libraries; the sets contain one another.
+# The environment. Stamps say what is installed; everything contains what the service needs.
 
 $(BIN)/python:
 	@found=; \
@@ -84,10 +84,6 @@ $(VENV)/.installed-service: $(BIN)/python pyproject.toml constraints.txt
 	$(PIP_INSTALL) -e '.[service,pandas]'
 	@touch $@
 
-$(VENV)/.installed-test: $(BIN)/python pyproject.toml constraints.txt
-	$(PIP_INSTALL) -e '.[test]'
-	@touch $(VENV)/.installed-service $@
-
-$(VENV)/.installed-bench: $(BIN)/python pyproject.toml constraints.txt
+$(VENV)/.installed-all: $(BIN)/python pyproject.toml constraints.txt
 	$(PIP_INSTALL) -e '.[bench]'
-	@touch $(VENV)/.installed-service $(VENV)/.installed-test $@
+	@touch $(VENV)/.installed-service $@

@@ -54,10 +54,12 @@ def measure(*, quick: bool, seed: int, jobs: int, say: Callable[[str], None]) ->
     say("numeric traps")
     traps = measure_traps(contenders, seed=seed, draws=trap_draws)
     accuracy = measure_bed(contenders, seed=seed, scale=0.01 if quick else 1.0, jobs=jobs, progress=say)
-    claim_draws = 1 if quick else 1000
-    results = measure_claims(claim_draws, seed=seed + 1, jobs=jobs, progress=say)
+    claim_draws, family_draws = (1, 1) if quick else (1000, 250)
+    results = measure_claims(claim_draws, family_draws=family_draws, seed=seed + 1, jobs=jobs, progress=say)
     claims = [*check_claims(results), *check_speed(speeds, passes, footprints)]
-    return Measured(accuracy, claims, results, claim_draws, traps, trap_draws, speeds, passes, footprints)
+    return Measured(
+        accuracy, claims, results, claim_draws, family_draws, traps, trap_draws, speeds, passes, footprints
+    )
 
 
 def _progress(terminal: bool) -> Callable[[str], None]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.bed import KINDS
+from benchmarks.bed import KINDS, true_inliers
 from benchmarks.cells import Cell, Outcomes, measure_all, pool
 from benchmarks.contenders import Contender
 from estimators.arrays import FloatArray
@@ -84,7 +84,7 @@ def measure_bed(
         for kind in KINDS
         for share in SHARES
         for n, draws in DRAWS.items()
-        if round((1.0 - share) * n) >= LEAST_INLIERS
+        if true_inliers(kind, n, share) >= LEAST_INLIERS
     ]
     measured = measure_all(contenders, cells, seed=seed, jobs=jobs, progress=progress)
     table = {

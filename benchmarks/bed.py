@@ -12,7 +12,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from benchmarks.families import FAMILIES
+from benchmarks.families import FAMILIES, STEP_SHARE
 from benchmarks.kinds import KINDS, SIGMA, SPAN, Kind
 from estimators.arrays import BoolArray, FloatArray
 
@@ -84,9 +84,15 @@ def make_series(kind: str, n: int, share: float, rng: np.random.Generator) -> Dr
     )
 
 
+def true_inliers(kind: str, n: int, share: float) -> int:
+    """Inliers that a draw has; for ``step``, whose uniform outliers fall on both branches, about as many."""
+    branch = n - round(STEP_SHARE * n) if kind == "step" else n
+    return branch - round(share * branch)
+
+
 def draw_rng(seed: int, kind: str, n: int, share: float, index: int) -> np.random.Generator:
     """Return the generator of one draw: a pure function of the cell and the index, whatever else is drawn."""
     return np.random.default_rng([seed, zlib.crc32(kind.encode()), n, round(1000 * share), index])
 
 
-__all__ = ["ALL_KINDS", "FAMILIES", "KINDS", "Draw", "draw_rng", "make_series"]
+__all__ = ["ALL_KINDS", "FAMILIES", "KINDS", "Draw", "draw_rng", "make_series", "true_inliers"]

@@ -16,15 +16,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks.accuracy import DRAWS, LEAST_INLIERS, NORMAL_KINDS, SHARES
-from benchmarks.bed import FAMILIES, KINDS
+from benchmarks.bed import FAMILIES, KINDS, true_inliers
 from benchmarks.cells import Cell, Outcomes, measure_all, pool
 from benchmarks.contenders import AUTO
 
 SIZES = DRAWS
 """Sizes, and how they are weighted when a cell pools them."""
+CORRELATED = tuple(kind for kind in FAMILIES if kind.startswith("ar1"))
 CORRELATED_SIZES = (80, 200, 1000)
 RMS_LIMITS = {0.0: 1.10, 0.2: 1.10, 0.4: 1.15, 0.6: 1.20}
-FAMILY_SHARES = (0.2, 0.4, 0.6, 0.8)
+FAMILY_SHARES = SHARES[:5]
 
 Results = Mapping[tuple[str, int, float], Outcomes]
 
@@ -71,37 +72,39 @@ class Claim:
         return "no"
 
 
-def claim_cells(draws: int, *, families: bool = True) -> list[Cell]:
-    """Return every cell that the claims need, with this many draws each."""
-    cells = [
-        Cell(kind, n, share, draws)
-        for kind in KINDS
-        for share in SHARES
-        for n in SIZES
-        if round((1.0 - share) * n) >= LEAST_INLIERS
+def claim_cells(draws: int, family_draws: int) -> list[Cell]:
+    """Return the cells that the claims need, and those of the families that nobody claims anything about.
+
+    Parameters
+    ----------
+    draws : int
+        Per cell that a claim rests on.
+    family_draws : int
+        Per other cell; 0 leaves them out.
+    """
+    claimed = [(kind, n, share) for kind in KINDS for share in SHARES for n in SIZES]
+    claimed += [("step", n, 0.0) for n in SIZES]
+    claimed += [
+        (kind, n, share) for kind in CORRELATED for share in (0.0, 0.2, 0.4) for n in CORRELATED_SIZES
     ]
-    cells += [Cell("step", n, share, draws) for share in (0.0, 0.2) for n in SIZES]
-    correlated = [kind for kind in FAMILIES if kind.startswith("ar1")]
-    cells += [
-        Cell(kind, n, share, draws)
-        for kind in correlated
-        for share in (0.0, 0.2, 0.4)
-        for n in CORRELATED_SIZES
-    ]
-    if families:
-        cells += [Cell(kind, n, share, draws) for kind in FAMILIES for share in FAMILY_SHARES for n in SIZES]
-        cells += [Cell(kind, n, 0.0, draws) for kind in FAMILIES for n in SIZES]
-        cells = [cell for cell in cells if round((1.0 - cell.share) * cell.n) >= LEAST_INLIERS]
-    return list(dict.fromkeys(cells))
+    others = [(kind, n, share) for kind in FAMILIES for share in FAMILY_SHARES for n in SIZES]
+    wanted = dict.fromkeys(claimed, draws)
+    if family_draws > 0:
+        wanted = dict.fromkeys(others, family_draws) | wanted
+    return [Cell(*key, count) for key, count in wanted.items() if true_inliers(*key) >= LEAST_INLIERS]
 
 
 def measure_claims(
-    draws: int, *, seed: int, jobs: int, families: bool = True, progress: Callable[[str], None] | None = None
+    draws: int,
+    *,
+    family_draws: int,
+    seed: int,
+    jobs: int,
+    progress: Callable[[str], None] | None = None,
 ) -> Results:
     """Measure ``auto`` on every cell."""
-    measured = measure_all(
-        (AUTO,), claim_cells(draws, families=families), seed=seed, jobs=jobs, progress=progress
-    )
+    cells = claim_cells(draws, family_draws)
+    measured = measure_all((AUTO,), cells, seed=seed, jobs=jobs, progress=progress)
     return {(cell.kind, cell.n, cell.share): outcomes[0] for cell, outcomes in measured.items()}
 
 
@@ -211,7 +214,7 @@ def _bed_cells(results: Results, wanted: Callable[[int], bool]) -> list[tuple[st
 def _correlated_cells(results: Results, shares: Iterable[float]) -> list[tuple[str, int, float]]:
     wanted = set(shares)
     return [
-        key for key in results if key[0].startswith("ar1") and key[1] in CORRELATED_SIZES and key[2] in wanted
+        key for key in results if key[0] in CORRELATED and key[1] in CORRELATED_SIZES and key[2] in wanted
     ]
 
 
@@ -253,24 +256,29 @@ def main() -> int:
     parser.add_argument("--draws", type=int, default=1000, help="draws per cell (default 1000)")
     parser.add_argument("--seed", type=int, default=20_000, help="seed of the draws (default 20000)")
     parser.add_argument("--jobs", type=int, default=2, help="processes (default 2)")
-    parser.add_argument("--bed-only", action="store_true", help="leave out the families never used to tune")
+    parser.add_argument(
+        "--family-draws", type=int, help="draws per cell of the other families (default: draws / 4)"
+    )
+    parser.add_argument("--bed-only", action="store_true", help="leave the other families out")
     chosen = parser.parse_args()
     started = time.perf_counter()
-    results = measure_claims(chosen.draws, seed=chosen.seed, jobs=chosen.jobs, families=not chosen.bed_only)
+    wanted = -(-chosen.draws // 4) if chosen.family_draws is None else chosen.family_draws
+    family_draws = 0 if chosen.bed_only else wanted
+    results = measure_claims(chosen.draws, family_draws=family_draws, seed=chosen.seed, jobs=chosen.jobs)
     claims = check_claims(results)
-    sys.stdout.write(text_report(results, claims, families=not chosen.bed_only))
+    sys.stdout.write(text_report(results, claims))
     sys.stdout.write(f"\n{chosen.draws} draws per cell, {time.perf_counter() - started:.0f} s\n")
     return int(any(claim.holds == "no" for claim in claims))
 
 
-def text_report(results: Results, claims: Iterable[Claim], *, families: bool) -> str:
+def text_report(results: Results, claims: Iterable[Claim]) -> str:
     """Return the whole report as plain text."""
     lines = [f"{'claim':<96}{'reached':>9}  holds"]
     for claim in claims:
         lines.append(f"{claim.text + ' ' + claim.wanted:<96}{claim.reached:>9.3f}  {claim.holds}")
         lines.extend(f"      {cell}" for cell in claim.cells)
     lines.append("\nfailure %        " + "".join(f"{share:>7.0%}" for share in SHARES))
-    for kind, *rates in family_table(results, (*KINDS, *(FAMILIES if families else ())), SHARES):
+    for kind, *rates in family_table(results, (*KINDS, *FAMILIES), SHARES):
         lines.append(f"{kind:<17}" + "".join(f"{rate:>7}" for rate in rates))
     return "\n".join(lines) + "\n"
 

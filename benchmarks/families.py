@@ -14,6 +14,7 @@ from benchmarks.kinds import (
     Kind,
     add_runs,
     all_but,
+    competing_line,
     contiguous_runs,
     excursion_levels,
     irregular_times,
@@ -21,6 +22,9 @@ from benchmarks.kinds import (
     with_uniform,
 )
 from estimators.arrays import FloatArray
+
+STEP_SHARE = 0.4
+"""Where the level steps, as a share of the span and of the points."""
 
 
 def gamma(n: int, outliers: int, rng: np.random.Generator) -> Contaminated:
@@ -45,10 +49,11 @@ def step(n: int, outliers: int, rng: np.random.Generator) -> Contaminated:
 
     ``outliers`` uniform ones come on top, on both branches alike.
     """
-    before = round(0.4 * n)
+    before = round(STEP_SHARE * n)
     t = irregular_times(n, rng, gap=0.0)
     jump = 0.5 * (t[before - 1] + t[before])
-    t = np.where(t < jump, 0.4 * SPAN * t / jump, SPAN - 0.6 * SPAN * (SPAN - t) / (SPAN - jump))
+    rest = (1.0 - STEP_SHARE) * SPAN
+    t = np.where(t < jump, STEP_SHARE * SPAN * t / jump, SPAN - rest * (SPAN - t) / (SPAN - jump))
     made = with_uniform(t, rng.normal(size=n), outliers, rng)
     early = np.arange(n) < before
     made.offset[early & made.inlier] += rng.choice([-1.0, 1.0]) * rng.uniform(8.0, 30.0)
@@ -122,18 +127,16 @@ def free_bursts(n: int, outliers: int, rng: np.random.Generator) -> Contaminated
     return add_runs(offset, runs, excursion_levels(len(runs), rng), t)
 
 
-def free_bursts(n: int, outliers: int, rng: np.random.Generator) -> Contaminated:
-    """Three runs in time, about equally long, whose levels may be near the trend or alike."""
-    t, offset = irregular_times(n, rng), rng.normal(size=n)
-    runs = contiguous_runs(n, outliers, 3, 0.3, rng)
-    return add_runs(offset, runs, excursion_levels(len(runs), rng), t)
-
-
 def uneven_bursts(n: int, outliers: int, rng: np.random.Generator) -> Contaminated:
     """Two to five runs in time of very unequal length, each at a constant level."""
     t, offset = irregular_times(n, rng), rng.normal(size=n)
     runs = contiguous_runs(n, outliers, int(rng.integers(2, 6)), 0.9, rng)
     return add_runs(offset, runs, excursion_levels(len(runs), rng), t)
+
+
+def near_line2(n: int, outliers: int, rng: np.random.Generator) -> Contaminated:
+    """Competing line that may all but coincide with the trend."""
+    return competing_line(n, outliers, 0.0, rng)
 
 
 def clumps(n: int, outliers: int, rng: np.random.Generator) -> Contaminated:
@@ -166,8 +169,8 @@ FAMILIES: MappingProxyType[str, Kind] = MappingProxyType(
         "ar1_0.8": _ar1(0.8),
         "walk_bursts": walk_bursts,
         "free_bursts": free_bursts,
-        "free_bursts": free_bursts,
         "uneven_bursts": uneven_bursts,
+        "near_line2": near_line2,
         "clumps": clumps,
     }
 )

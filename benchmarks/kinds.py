@@ -86,16 +86,14 @@ def contiguous_runs(
 def excursion_levels(
     count: int, rng: np.random.Generator, nearest: float = 5.0, apart: float = 0.0
 ) -> FloatArray:
-    """Offsets of excursions, ``nearest`` to 60 sigma to either side and at least ``apart`` from one another."""
+    """Offsets of excursions: ``nearest`` to 60 sigma to either side, at least ``apart`` from one another."""
     while True:
         levels = rng.choice([-1.0, 1.0], size=count) * rng.uniform(nearest, BOX, size=count)
         if count < 2 or np.diff(np.sort(levels)).min() >= apart:
             return np.asarray(levels)
 
 
-def add_runs(
-    offset: FloatArray, runs: list[IntArray], levels: FloatArray, t: FloatArray
-) -> Contaminated:
+def add_runs(offset: FloatArray, runs: list[IntArray], levels: FloatArray, t: FloatArray) -> Contaminated:
     """Lift each run to its level, with the noise it has."""
     inlier = np.ones(t.size, dtype=bool)
     for rows, level in zip(runs, levels, strict=True):
@@ -136,15 +134,25 @@ def burst(n: int, outliers: int, rng: np.random.Generator) -> Contaminated:
     return add_runs(offset, runs, excursion_levels(len(runs), rng, nearest=8.0, apart=15.0), t)
 
 
-def line2(n: int, outliers: int, rng: np.random.Generator) -> Contaminated:
-    """Competing line with 60 % as many points as the trend, the other outliers uniform."""
+def competing_line(n: int, outliers: int, farthest: float, rng: np.random.Generator) -> Contaminated:
+    """Line with 60 % as many points as the trend, the other outliers uniform.
+
+    Its offsets at both ends of the range lie within ±60 sigma; one of them is at least ``farthest``.
+    """
     t, offset = irregular_times(n, rng), rng.normal(size=n)
     hit = scattered_rows(n, outliers, rng)
     on_line = min(outliers, round(0.6 * (n - outliers)))
     first, last = rng.uniform(-BOX, BOX, size=2)
+    while max(abs(first), abs(last)) < farthest:
+        first, last = rng.uniform(-BOX, BOX, size=2)
     offset[hit[:on_line]] += first + (last - first) * t[hit[:on_line]] / SPAN
     offset[hit[on_line:]] = rng.uniform(-BOX, BOX, size=outliers - on_line)
     return Contaminated(t, offset, all_but(n, hit))
+
+
+def line2(n: int, outliers: int, rng: np.random.Generator) -> Contaminated:
+    """Competing line, at least 15 sigma away at one end of the range (``near_line2`` may be closer)."""
+    return competing_line(n, outliers, 15.0, rng)
 
 
 def t2(n: int, outliers: int, rng: np.random.Generator) -> Contaminated:

@@ -29,7 +29,7 @@ class Oracle:
     errors : ndarray of float64, shape (2,)
         Oracle minus truth at the first and last time.
     stderr : ndarray of float64, shape (2,)
-        The oracle's standard errors there, for independent noise of the draw's sigma.
+        The oracle's standard errors there, as least squares reports them.
     inliers : int
     """
 
@@ -45,7 +45,7 @@ def line_errors(slope: float, intercept: float, draw: Draw) -> FloatArray:
 
 
 def oracle(draw: Draw) -> Oracle:
-    """Least squares on the true inliers of a draw (at least 2 of them).
+    """Least squares on the true inliers of a draw (at least 3 of them).
 
     Examples
     --------
@@ -57,8 +57,10 @@ def oracle(draw: Draw) -> Oracle:
     center = t.mean()
     spread = float(np.sum((t - center) ** 2))
     slope = float(np.sum((t - center) * y) / spread)
+    residual = y - y.mean() - slope * (t - center)
+    noise = np.sqrt(np.sum(residual**2) / (t.size - 2))
     away = draw.t[[0, -1]] - center
-    stderr = draw.sigma * np.sqrt(1.0 / t.size + away**2 / spread)
+    stderr = noise * np.sqrt(1.0 / t.size + away**2 / spread)
     errors = line_errors(slope, float(y.mean() - slope * center), draw)
     return Oracle(errors, np.asarray(stderr), int(t.size))
 

@@ -36,6 +36,7 @@ class Measured:
     claims: Sequence[Claim]
     claim_results: Results
     claim_draws: int
+    family_draws: int
     traps: FloatArray
     trap_draws: int
     speeds: Mapping[int, SpeedTable]
@@ -91,6 +92,7 @@ def _page(measured: Measured) -> str:
         "sklearn_wall": _wall(largest, "scikit-learn RANSACRegressor"),
         "skimage_wall": _wall(largest, "scikit-image ransac"),
         "footprints": _footprints(measured.footprints),
+        "family_draws": f"{measured.family_draws:,}",
         "claim_draws": f"{measured.claim_draws:,}",
         "claims": _claims(measured.claims),
     }

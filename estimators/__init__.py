@@ -33,10 +33,10 @@ __version__ = version("plumbline")
 
 
 def methods() -> Mapping[str, Preset]:
-    """The named methods, ``auto`` first: what ``method=`` takes."""
+    """Return the named methods, ``auto`` first: what ``method=`` takes."""
     return PRESETS
 
 
 def models() -> Mapping[str, TrendModel]:
-    """The shapes a trend can have: what ``model=`` takes."""
+    """Return the shapes a trend can have: what ``model=`` takes."""
     return MODELS

@@ -5,8 +5,8 @@ compiled (or read from the cache) at its first call or by :func:`warm`, and refu
 *device* function is compiled into the kernels that call it.
 
 Numba stamps a cached kernel with the content of the one file it stands in, so that editing a device
-function in another file would leave a stale kernel behind. Here the stamp is the content of every file
-of the package that declares compiled code, and the cache may live on a read-only disk.
+function in another file would leave a stale kernel behind. Here the stamp is the content of that file
+and of all it imports from the package, and the cache may live on a read-only disk.
 """
 
 from __future__ import annotations
@@ -14,12 +14,14 @@ from __future__ import annotations
 import functools
 import hashlib
 import os
+import re
+import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, Generic, ParamSpec, TypeVar, cast
 
 import numba
-from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, NullCache, UserProvidedCacheLocator
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -29,7 +31,9 @@ _REGISTRY: list[Kernel[..., Any]] = []
 
 
 def cache_directory() -> Path:
-    """Directory of the compiled kernels: ``PLUMBLINE_CACHE_DIR``, else inside the package, else the user's cache.
+    """Directory of the compiled kernels.
+
+    ``PLUMBLINE_CACHE_DIR`` if set, else inside the package, else the user's cache.
 
     Returns
     -------
@@ -45,34 +49,54 @@ def cache_directory() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "plumbline"
 
 
+_IMPORT = re.compile(r"^from (estimators[\w.]*) import (\([^)]*\)|.*)", re.MULTILINE)
+
+
 @functools.cache
-def source_stamp() -> str:
-    """Digest of every source file of the package that declares compiled code."""
+def source_stamp(path: Path) -> str:
+    """Digest of a source file and of everything of the package that it imports, directly or not."""
+    seen: set[Path] = set()
+    pending = [path]
+    while pending:
+        source = pending.pop()
+        if source not in seen:
+            seen.add(source)
+            pending.extend(_imported(source))
     digest = hashlib.sha256()
-    for path in sorted(_PACKAGE.rglob("*.py")):
-        text = path.read_bytes()
-        if b"kernels import" in text or path == Path(__file__).resolve():
-            digest.update(str(path.relative_to(_PACKAGE)).encode())
-            digest.update(text)
+    for source in sorted(seen):
+        digest.update(str(source.relative_to(_PACKAGE)).encode())
+        digest.update(source.read_bytes())
     return digest.hexdigest()
 
 
-class _Locator(_CacheLocator):  # type: ignore[misc]  # numba's caching module is untyped
+@functools.cache
+def _imported(path: Path) -> tuple[Path, ...]:
+    """Files of the package that a file imports; packages count by the modules named, not as a whole."""
+    found: list[Path] = []
+    for module, names in _IMPORT.findall(path.read_text(encoding="utf-8")):
+        base = _PACKAGE.joinpath(*module.split(".")[1:])
+        candidates = [base.with_suffix(".py")]
+        candidates += [base / f"{name}.py" for name in re.findall(r"\w+", names)]
+        found += [candidate for candidate in candidates if candidate.is_file()]
+    return tuple(found)
+
+
+class _Locator(UserProvidedCacheLocator):
     """Place and stamp of a cached kernel; writing is allowed to fail (read-only images)."""
 
     def __init__(self, py_func: Callable[..., object], py_file: str) -> None:
-        self._line = py_func.__code__.co_firstlineno
-        self._file = py_file
+        self._py_file = py_file
+        self._lineno = py_func.__code__.co_firstlineno
 
     def get_cache_path(self) -> str:
         return str(cache_directory())
 
     def get_source_stamp(self) -> str:
-        return source_stamp()
+        return source_stamp(Path(self._py_file).resolve())
 
     def get_disambiguator(self) -> str:
-        relative = Path(self._file).resolve().relative_to(_PACKAGE)
-        return f"{relative.with_suffix('').as_posix().replace('/', '.')}-{self._line}"
+        relative = Path(self._py_file).resolve().relative_to(_PACKAGE)
+        return f"{relative.with_suffix('').as_posix().replace('/', '.')}-{self._lineno}"
 
     def ensure_cache_path(self) -> None:
         try:
@@ -85,11 +109,11 @@ class _Locator(_CacheLocator):  # type: ignore[misc]  # numba's caching module i
         return cls(py_func, py_file)
 
 
-class _CacheImpl(CompileResultCacheImpl):  # type: ignore[misc]
-    _locator_classes = (_Locator,)
+class _CacheImpl(CompileResultCacheImpl):
+    _locator_classes: list[type[object]] = [_Locator]  # noqa: RUF012  # an instance variable in numba
 
 
-class _Cache(FunctionCache):  # type: ignore[misc]
+class _Cache(FunctionCache):
     _impl_class = _CacheImpl
 
 
@@ -110,24 +134,28 @@ class Kernel(Generic[P, R]):
         self._signature = signature
         self._dispatcher: Any = numba.njit(nogil=True)(function)
         self._compiled: Callable[P, R] | None = None
+        self._loading = threading.Lock()
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
+        """Run the compiled code, loading it at the first call."""
         return (self._compiled or self.load())(*args, **kwargs)
 
     def load(self) -> Callable[P, R]:
         """Compile the kernel or read it from the cache; later calls cost nothing."""
-        if self._compiled is None:
-            dispatcher = self._dispatcher
-            try:
-                dispatcher._cache = _Cache(dispatcher.py_func)
-                dispatcher.compile(self._signature)
-            except OSError:
-                # A cache that can be neither written nor read must not keep anybody from an answer.
-                dispatcher._cache = type(numba.njit(_nothing)._cache)()
-                dispatcher.compile(self._signature)
-            dispatcher.disable_compile()
-            self._compiled = cast("Callable[P, R]", dispatcher)
-        return self._compiled
+        # A fit may come while another thread warms: the second waits for the first.
+        with self._loading:
+            if self._compiled is None:
+                dispatcher = self._dispatcher
+                try:
+                    dispatcher._cache = cast("Any", _Cache)(dispatcher.py_func)
+                    dispatcher.compile(self._signature)
+                except OSError:
+                    # A cache that can be neither written nor read must not keep anybody from an answer.
+                    dispatcher._cache = NullCache()
+                    dispatcher.compile(self._signature)
+                dispatcher.disable_compile()
+                self._compiled = cast("Callable[P, R]", dispatcher)
+            return self._compiled
 
     @property
     def is_loaded(self) -> bool:
@@ -138,10 +166,6 @@ class Kernel(Generic[P, R]):
     def came_from_cache(self) -> bool:
         """Whether loading read the compiled code from disk."""
         return bool(self._compiled is not None and sum(self._dispatcher.stats.cache_hits.values()))
-
-
-def _nothing() -> None:
-    """Carry the type of numba's null cache."""
 
 
 def kernel(signature: object) -> Callable[[Callable[P, R]], Kernel[P, R]]:

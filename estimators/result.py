@@ -1,4 +1,4 @@
-"""What every answer shares: estimates with uncertainty, labels per point, the consensus ledger, notices, and NoFit.
+"""What every answer shares: estimates with uncertainty, labels per point, the ledger, notices, and NoFit.
 
 Plain frozen data; nothing here computes. The service mirrors these classes on the wire (DESIGN: "The
 verbs and their answers").
@@ -6,12 +6,18 @@ verbs and their answers").
 
 from __future__ import annotations
 
+import html
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
 
 from estimators.arrays import BoolArray, CodeArray, FloatArray, Reason
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 class NoticeCode(StrEnum):
@@ -37,13 +43,17 @@ class NoticeCode(StrEnum):
 
 NOTICE_MEANINGS: Mapping[NoticeCode, str] = {
     NoticeCode.few_points: "So few points that outliers can hardly be told from inliers.",
-    NoticeCode.no_redundancy: "The line passes through the points exactly; there is no uncertainty to report.",
+    NoticeCode.no_redundancy: (
+        "The line passes through the points exactly; there is no uncertainty to report."
+    ),
     NoticeCode.ambiguous_structure: "Another trend explains the series nearly as well; both are reported.",
     NoticeCode.low_inlier_ratio: "Fewer than half of the points follow the trend.",
     NoticeCode.low_sampling_probability: "The hypotheses drawn may have missed a clean sample.",
-    NoticeCode.serial_correlation: "Neighbouring residuals are correlated; intervals are widened accordingly.",
+    NoticeCode.serial_correlation: (
+        "Neighbouring residuals are correlated; intervals are widened accordingly."
+    ),
     NoticeCode.quantised_values: "The values are rounded coarsely compared with their noise.",
-    NoticeCode.zero_noise: "The points lie exactly on the trend; the noise scale is set by the arithmetic.",
+    NoticeCode.zero_noise: ("The points lie exactly on the trend; the noise scale is set by the arithmetic."),
     NoticeCode.constant_values: "All values are equal.",
     NoticeCode.duplicate_times: "Several points share a time; they are all used.",
     NoticeCode.unsorted_times: "The times were not in order; the answer keeps the order of the input.",
@@ -241,19 +251,24 @@ class NoFit:
     points : Points
         One entry per input row, as in an answer.
     notices : tuple of Notice
+    time, values : ndarray or None
+        The caller's series as numbers or datetime64[ns], in input order, for frames.
     """
 
     reason: NoFitReason
     message: str
     points: Points
     notices: tuple[Notice, ...] = ()
+    time: np.ndarray[Any, Any] | None = field(default=None, repr=False)
+    values: FloatArray | None = field(default=None, repr=False)
 
     def __bool__(self) -> bool:
         return False
 
     def summary(self) -> str:
-        """Text for people."""
-        return f"No fit ({self.reason.value}): {self.message}"
+        """Text for people: the reason and the warnings."""
+        told = [f"Note: {item.message}" for item in self.notices]
+        return "\n".join([f"No fit ({self.reason.value}): {self.message}", *told])
 
     def to_dict(self) -> dict[str, Any]:
         """JSON-safe form."""
@@ -264,6 +279,31 @@ class NoFit:
             "points": {"reason": self.points.reason},
             "notices": [notice_to_dict(item) for item in self.notices],
         }
+
+    def to_frame(self) -> pd.DataFrame:
+        """One row per input row: what there is of time and value, inlier, probability, residual, reason.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed (extra ``[pandas]``).
+        """
+        import pandas as pd  # noqa: PLC0415
+
+        names = pd.Index([member.name for member in Reason])
+        columns: dict[str, Any] = {"time": self.time, "value": self.values}
+        columns |= {
+            "inlier": self.points.inlier,
+            "probability": self.points.probability,
+            "residual": self.points.residual,
+            "reason": pd.Categorical.from_codes(self.points.reason_codes.astype(np.int8), categories=names),
+        }
+        return pd.DataFrame({name: column for name, column in columns.items() if column is not None})
+
+    def _repr_html_(self) -> str:
+        notes = "".join(f"<li>{html.escape(item.message)}</li>" for item in self.notices)
+        listed = f"<ul>{notes}</ul>" if notes else ""
+        return f"<p><b>No fit</b> ({self.reason.value}): {html.escape(self.message)}</p>{listed}"
 
 
 def notice_to_dict(item: Notice) -> dict[str, Any]:

@@ -13,7 +13,17 @@ from typing import Any
 import numpy as np
 from numba import types
 
-from estimators.arrays import ArrayLike, CodeArray, FloatArray, InputError, IntArray, Reason, as_vector
+from estimators.arrays import (
+    LARGEST_VALUE,
+    ArrayLike,
+    BoolArray,
+    CodeArray,
+    FloatArray,
+    InputError,
+    IntArray,
+    Reason,
+    as_vector,
+)
 from estimators.kernels import kernel, ro
 from estimators.time_axis import TimeAxis, as_times
 
@@ -70,11 +80,11 @@ class Series:
 
 
 @kernel(types.boolean(ro(types.float64), ro(types.float64)))
-def is_orderly(t, y):
-    """Whether all times and values are finite and the times strictly ascend."""
+def is_orderly(t: FloatArray, y: FloatArray) -> bool:
+    """Whether all times are finite and strictly ascend, and no value is missing or beyond LARGEST_VALUE."""
     last = -np.inf
     for i in range(t.size):
-        if not (t[i] > last and t[i] < np.inf and y[i] - y[i] == 0.0):
+        if not (t[i] > last and t[i] < np.inf and abs(y[i]) <= LARGEST_VALUE):
             return False
         last = t[i]
     return True
@@ -88,7 +98,7 @@ def as_series(t: ArrayLike, y: ArrayLike, weights: ArrayLike | None = None) -> S
     t : array_like, shape (n,)
         float64, integers, datetime64 or ``datetime``; any order; NaN, NaT and None are missing.
     y : array_like, shape (n,)
-        Numbers; NaN and None are missing, infinities are invalid.
+        Numbers; NaN and None are missing, infinities are invalid, other values at most LARGEST_VALUE.
     weights : array_like, shape (n,), optional
         Precisions (1/variance up to scale); 0 leaves a row out.
 
@@ -99,7 +109,7 @@ def as_series(t: ArrayLike, y: ArrayLike, weights: ArrayLike | None = None) -> S
     Raises
     ------
     InputError
-        On unequal lengths, wrong types, negative or non-finite weights.
+        On unequal lengths, wrong types, magnitudes whose squares overflow, negative or non-finite weights.
 
     Examples
     --------
@@ -107,7 +117,7 @@ def as_series(t: ArrayLike, y: ArrayLike, weights: ArrayLike | None = None) -> S
     >>> s.t, s.y, s.rows
     (array([0., 2.]), array([1., 5.]), array([1, 0]))
     """
-    internal, axis = as_times(t)
+    internal, axis, input_time = as_times(t)
     values = as_vector(y, "y")
     if internal.size != values.size:
         raise InputError("y", f"{values.size} values for {internal.size} times; give one value per time")
@@ -118,6 +128,7 @@ def as_series(t: ArrayLike, y: ArrayLike, weights: ArrayLike | None = None) -> S
     rows: IntArray | None = None
     t_kept, y_kept = internal, values
     if not is_orderly(internal, values) or (precision is not None and not precision.all()):
+        _refuse_huge(values)
         _mark_unusable(reasons, internal, values, precision)
         rows, was_sorted = _ordered_rows(reasons, internal, values)
         t_kept, y_kept = internal[rows], values[rows]
@@ -128,7 +139,6 @@ def as_series(t: ArrayLike, y: ArrayLike, weights: ArrayLike | None = None) -> S
     if precision is not None and t_kept.size:
         precision = precision if rows is None else precision[rows]
         precision = precision / precision.mean()
-    input_time = _input_time(t, axis, internal)
     return Series(
         t=t_kept,
         y=y_kept,
@@ -157,6 +167,16 @@ def _as_precision(weights: ArrayLike | None, n: int) -> FloatArray | None:
     return precision / largest if largest > 0 else precision
 
 
+def _refuse_huge(values: FloatArray) -> None:
+    # NaN compares as False and infinities are invalid rows: only finite values are meant.
+    huge: BoolArray = (np.abs(values) > LARGEST_VALUE) & np.isfinite(values)
+    if huge.any():
+        row = int(np.argmax(huge))
+        raise InputError(
+            "y", f"row {row} is beyond ±{LARGEST_VALUE:g}, where squares overflow; use a larger unit"
+        )
+
+
 def _mark_unusable(
     reasons: CodeArray, internal: FloatArray, values: FloatArray, precision: FloatArray | None
 ) -> None:
@@ -175,11 +195,3 @@ def _ordered_rows(reasons: CodeArray, internal: FloatArray, values: FloatArray) 
         # Ties in time are ordered by value so that the answer does not depend on the caller's row order.
         rows = rows[np.lexsort((values[rows], t_kept))]
     return rows, was_sorted
-
-
-def _input_time(t: ArrayLike, axis: TimeAxis, internal: FloatArray) -> np.ndarray[Any, Any]:
-    """The caller's times as numbers or datetime64[ns]."""
-    if axis.kind == "datetime":
-        return axis.from_internal(internal)
-    array = np.asarray(t)
-    return array if array.dtype.kind in "iuf" else as_vector(array, "t")

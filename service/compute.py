@@ -26,6 +26,9 @@ from service.settings import Settings
 
 T = TypeVar("T")
 
+#: How often a request that came too early looks whether the service is ready.
+POLL_SECONDS = 0.02
+
 
 class Patience:
     """Whether somebody still waits for a job; jobs ask between their phases, kernels while they run.
@@ -164,6 +167,27 @@ class Warmth:
     def start(self) -> None:
         """Begin; returns at once."""
         self._thread.start()
+
+    async def wait(self, seconds: float) -> None:
+        """Wait until everything is loaded; returns at once in all but the first moments of a process.
+
+        Raises
+        ------
+        Problem
+            503 if that takes longer than some seconds, or has failed.
+        """
+        give_up = time.monotonic() + seconds
+        while not self.is_ready:
+            if self.has_failed or time.monotonic() > give_up:
+                raise self.not_ready()
+            await asyncio.sleep(POLL_SECONDS)
+
+    def not_ready(self) -> Problem:
+        """Problem that says how far loading has come."""
+        if self.has_failed:
+            return Problem(ProblemType.not_ready, "compiled code could not be loaded; the log tells why")
+        detail = f"{self.loaded} of {self.total or 'all'} compiled functions are loaded"
+        return Problem(ProblemType.not_ready, detail, headers={"Retry-After": "1"})
 
     def stop(self) -> None:
         """Stop after the kernel that is being loaded."""

@@ -30,8 +30,10 @@ class Settings(BaseSettings):
 
     Attributes
     ----------
-    host, port : str, int
-        Address to listen on (``PLUMBLINE_HOST``, ``PLUMBLINE_PORT``; default 127.0.0.1:8000).
+    host : str
+        Address to listen on (default 127.0.0.1).
+    port : int
+        Port to listen on, 0 for any free one (default 8000).
     api_keys : str
         Comma-separated keys (``PLUMBLINE_API_KEYS``).
     api_key_file : Path or None
@@ -56,8 +58,10 @@ class Settings(BaseSettings):
         Connections and requests held at one time; more are answered 503 at once (default 512).
     cors_origins : str
         Comma-separated origins whose pages may call the service (default none: CORS is off).
-    log_level, log_format : str
-        ``info`` and ``json``; ``console`` is meant for people.
+    log_level : str
+        Least severity that is logged: ``debug``, ``info``, ``warning`` or ``error`` (default info).
+    log_format : str
+        ``json`` for programs, ``console`` for people (default json).
 
     Examples
     --------

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from estimators.trends.trend import Trend
 
-# More markers than this are thinned to one per pixel, and are an image inside an SVG.
+# More markers than this are thinned, and are an image inside an SVG.
 MAX_MARKERS = 3_000
 # Labels at least this certain are drawn with so much of their colour, the rest being paper.
 _CERTAINTIES = ((0.9, 1.0), (0.6, 0.55), (0.0, 0.25))
@@ -41,7 +41,8 @@ def draw_points(axes: Axes, sheet: Sheet) -> list[Artist]:
         total = int(np.count_nonzero(chosen))
         if total:
             size = _draw_markers(axes, sheet, np.flatnonzero(chosen & visible), marker, color, layer)
-            entries.append(_entry(f"{name} ({total:,})", marker=marker, color=color, markersize=size + 1))
+            look = {"marker": marker, "color": color, "markersize": max(size + 1, 4.0)}
+            entries.append(_entry(f"{name} ({total:,})", **look))
     least_of_all = _CERTAINTIES[0][0]
     if bool(np.any(sheet.certainty[visible & ~sheet.unused] < least_of_all)):
         pale = {
@@ -56,7 +57,11 @@ def _draw_markers(axes: Axes, sheet: Sheet, rows: IntArray, marker: str, color: 
     """Draw one kind of point in up to three shades and return the size of its markers."""
     dense = rows.size > MAX_MARKERS
     if dense:
-        rows = rows[one_per_cell(sheet.x[rows], sheet.y[rows], sheet.width_px, sheet.height_px)]
+        # Very many crosses are a loose texture behind the trend, which they would hide one per pixel.
+        cell_px = 5 if marker == "x" else 1
+        layer = 1.9 if marker == "x" else layer
+        columns, rows_up = sheet.width_px // cell_px, sheet.height_px // cell_px
+        rows = rows[one_per_cell(sheet.x[rows], sheet.y[rows], columns, rows_up)]
     look: dict[str, Any] = _marker(marker, rows.size, sheet.small)
     upper = np.inf
     for least, strength in _CERTAINTIES:
@@ -227,9 +232,12 @@ def draw_legend(figure: Figure, entries: list[Artist], sheet: Sheet) -> None:
         frameon=False,
         fontsize=_text_size(sheet) - 0.5,
         labelcolor=sheet.palette.ink,
-        handlelength=1.8,
-        columnspacing=1.4,
-        borderaxespad=0.2,
+        handlelength=1.2 if sheet.small else 1.8,
+        handletextpad=0.6,
+        columnspacing=1.2,
+        labelspacing=0.4,
+        borderpad=0.6,
+        borderaxespad=0.0,
     )
 
 

@@ -94,7 +94,7 @@ def trend_figure(
         figure = Figure(
             figsize=(width_px / _DPI, height_px / _DPI),
             dpi=_DPI,
-            layout=ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.1),
+            layout=ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.06),
             facecolor=sheet.palette.paper,
         )
         axes = figure.add_subplot()

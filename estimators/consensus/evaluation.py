@@ -69,7 +69,7 @@ class Values(NamedTuple):
 
 def rank(value: Value) -> tuple[float, int, float]:
     """Sort key of the tie rule: loss, then more inliers, then smaller squares (METHODS.md 13.7)."""
-    return value.loss, -value.inliers, value.squares
+    return value.loss, -value.inliers, 1.0 + value.squares
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,6 +14,7 @@ import numpy as np
 
 from estimators.arrays import BoolArray, FloatArray
 from estimators.options import RobustOptions
+from estimators.regression.group_uncertainty import GroupUncertainty
 from estimators.regression.loss import Loss
 from estimators.result import Ledger, NoFit, SearchKind
 
@@ -69,7 +70,7 @@ class LineData(LinearData):
         object.__setattr__(self, "weights", weights)
 
     @functools.cached_property
-    def columns(self) -> FloatArray:  # type: ignore[override]  # lazily, under the parent's name
+    def columns(self) -> FloatArray:
         """Design, shape (2, n)."""
         return np.stack((np.ones_like(self.t), self.t))
 
@@ -143,6 +144,10 @@ class Found:
     search : {"sampled", "exhaustive", "certified", "closed"}
     runner_up : OtherStructure or None
         Another structure that the search met on its way.
+    sums : ndarray of float64, or None
+        Sums of :mod:`estimators.regression.influence`, where the search made them on its last pass.
+    spread : GroupUncertainty or None
+        Covariance of ``theta`` for independent points, where the loss does not tell it.
     """
 
     theta: FloatArray
@@ -158,6 +163,8 @@ class Found:
     sampling_probability: float | None
     search: SearchKind
     runner_up: OtherStructure | None = None
+    sums: FloatArray | None = None
+    spread: GroupUncertainty | None = None
 
 
 class Search(Protocol):

@@ -42,6 +42,9 @@ class Rows(NamedTuple):
 class Value(NamedTuple):
     """What a model is worth: lower loss first, then more inliers, then smaller squares (METHODS.md 13.7).
 
+    Squares are compared after adding 1: models whose inliers are their own samples have squares of nothing
+    but rounding, and a tie broken by rounding would not survive a change of units.
+
     Attributes
     ----------
     loss : float
@@ -66,7 +69,7 @@ def is_better(a: Value, b: Value) -> bool:
         return a.loss < b.loss
     if a.inliers != b.inliers:
         return a.inliers > b.inliers
-    return a.squares < b.squares
+    return 1.0 + a.squares < 1.0 + b.squares
 
 
 @device

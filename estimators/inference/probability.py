@@ -23,7 +23,9 @@ _ROOT_2PI = math.sqrt(2.0 * math.pi)
         ro(types.float64), ro(types.float64), types.float64, types.Array(types.float64, 1, "C")
     )
 )  # fmt: skip
-def fill_posterior(residual, root_weight, sigma, posterior):
+def fill_posterior(
+    residual: FloatArray, root_weight: FloatArray, sigma: float, posterior: FloatArray
+) -> None:
     """EM over the share of inliers; ``posterior`` receives z_i."""
     n = residual.size
     weighted = root_weight.size > 0

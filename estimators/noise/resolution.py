@@ -66,12 +66,18 @@ def find_quantisation(y: FloatArray, t: FloatArray | None = None) -> Quantisatio
     >>> round(find_quantisation(temperature).quantum, 6)
     0.1
     """
-    if t is not None and y.size > 1:
-        fresh = np.ones(y.size, dtype=np.bool_)
-        fresh[1:] = (np.diff(t) != 0) | (np.diff(y) != 0)
-        y = y[fresh]
     if y.size > _SAMPLE:
-        y = y[(np.arange(_SAMPLE) * y.size) // _SAMPLE]
+        sample = (np.arange(_SAMPLE) * y.size) // _SAMPLE
+        y = y[sample]
+        t = None if t is None else t[sample]
+    ordered = np.sort(y)
+    if 2 * np.count_nonzero(ordered[1:] == ordered[:-1]) <= TIED_SHARE * y.size:
+        # The usual case: too few ties for a grid, however they fall.
+        return Quantisation(0.0, 0.0)
+    if t is not None:
+        fresh = np.ones(y.size, dtype=np.bool_)
+        fresh[1:] = (t[1:] != t[:-1]) | (y[1:] != y[:-1])
+        y = y[fresh]
     levels, counts = np.unique(y, return_counts=True)
     tied = levels[counts > 1]
     tied_share = float(counts[counts > 1].sum()) / max(y.size, 1)

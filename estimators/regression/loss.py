@@ -31,7 +31,7 @@ class LossKind(IntEnum):
     tabulated = 6
 
 
-CELLS_PER_SIGMA = 128
+CELLS_PER_SIGMA = 64
 """Resolution of a tabulated weight function, in cells per noise scale."""
 
 

@@ -140,7 +140,9 @@ def _search_sentence(model: str, consensus: Consensus) -> str:
     text = f"{drawn:,} {sample}s drawn"
     if consensus.sampling_probability is None:
         return text
-    return f"{text}; chance that a clean {sample} was among them: {percent(consensus.sampling_probability)}"
+    # A probability that rounds to 1 as a float is still not certainty: draws can all be unlucky.
+    chance = percent(min(consensus.sampling_probability, 1.0 - 1e-9))
+    return f"{text}; chance that a clean {sample} was among them: {chance}"
 
 
 def _runner_up_sentence(other: RunnerUp, unit: TimeUnit, origin: str) -> str:

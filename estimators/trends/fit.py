@@ -6,29 +6,31 @@ It reads as the work is done: check, frame, settle the scale, search, infer, lab
 from __future__ import annotations
 
 import dataclasses
-import difflib
 import math
 
 import numpy as np
 
-from estimators.arrays import ArrayLike, FloatArray, InputError
-from estimators.consensus.found import Found, LineData, Scale
+from estimators.arrays import LARGEST_VALUE, ArrayLike, InputError
+from estimators.consensus.found import LineData, Scale
 from estimators.consensus.presets import PRESETS, Preset
 from estimators.inference.intervals import two_sided_p
 from estimators.inference.probability import inlier_probability
 from estimators.inference.sandwich import LineUncertainty, line_uncertainty
 from estimators.noise.resolution import Quantisation, find_quantisation, scale_floor
 from estimators.options import RobustOptions
+from estimators.regression.influence import INLIERS, influence_sums
 from estimators.result import Consensus, NoFit, NoFitReason, Uncertainty
 from estimators.series import Series, as_series
+from estimators.trends.arguments import check_fraction, check_positive, check_seed, look_up
 from estimators.trends.labels import label_rows, unlabelled_rows
 from estimators.trends.line import Frame, line_geometry, line_parameters
+from estimators.trends.magnitude import in_value_units, value_unit
 from estimators.trends.models import MODELS
 from estimators.trends.observations import Evidence, collect_notices, input_notices
 from estimators.trends.quality import fit_quality
 from estimators.trends.runner_up import find_runner_up
 from estimators.trends.trend import Trend
-from estimators.trends.unpack import unpack_series
+from estimators.trends.unpack import plain_column, unpack_series
 
 _DEFAULTS = RobustOptions()
 
@@ -52,10 +54,10 @@ def fit_trend(
     Parameters
     ----------
     t : array_like, shape (n,)
-        Times: numbers, datetime64, ``datetime``; any order, repeats allowed. A pandas Series may be given
-        alone: its index is the time.
+        Times: numbers (0, or 1e-30 to 1e30 in size), datetime64, ``datetime``; any order, repeats allowed.
+        A pandas Series may be given alone: its index is the time.
     y : array_like, shape (n,)
-        Values; NaN and None are missing.
+        Values up to 1e60 in size; NaN and None are missing, infinities are invalid.
     model : str
         Shape of the trend; see :func:`estimators.models` (default ``"line"``).
     method : str
@@ -94,25 +96,44 @@ def fit_trend(
     >>> round(trend.parameters["slope"].value, 2), np.flatnonzero(~trend.points.inlier).tolist()
     (0.5, [3, 11, 12, 25])
     """
-    preset = _preset(method)
-    if model not in MODELS:
-        raise InputError("model", f"unknown model {model!r}; {_suggest(model, MODELS)}")
-    _check_positive("threshold", threshold)
-    _check_positive("sigma", sigma)
-    if not 0 < level < 1:
-        raise InputError("level", "must lie between 0 and 1, both excluded")
-    if isinstance(seed, bool) or not 0 <= int(seed) < 2**63:
-        raise InputError("seed", "must be an integer from 0 to 2**63 - 1")
+    preset = look_up("method", method, PRESETS)
+    look_up("model", model, MODELS)
+    threshold = check_positive("threshold", threshold)
+    sigma = check_positive("sigma", sigma)
+    level = check_fraction("level", level)
+    seed = check_seed(seed)
     settings = _DEFAULTS if options is None else options
+    if not isinstance(settings, RobustOptions):
+        raise InputError("options", "expected a RobustOptions")
     times, values = unpack_series(t, y)
-    series = as_series(times, values, weights)
+    series = as_series(times, values, None if weights is None else plain_column(weights))
     refused = _refuse(series)
     if refused is not None:
         return refused
-    trend = _fit(series, preset, threshold, sigma, level, int(seed), settings)
-    if predict is not None and trend:
-        trend = dataclasses.replace(trend, prediction=trend.predict(predict, level))
-    return trend
+    trend = _fit_any_magnitude(series, preset, threshold, sigma, level, seed, settings)
+    if predict is None or isinstance(trend, NoFit):
+        return trend
+    return dataclasses.replace(trend, prediction=trend.predict(predict, level))
+
+
+def _fit_any_magnitude(
+    series: Series,
+    preset: Preset,
+    threshold: float | None,
+    sigma: float | None,
+    level: float,
+    seed: int,
+    options: RobustOptions,
+) -> Trend | NoFit:
+    """Fit in a unit in which squares of the values do not underflow; nearly always the caller's."""
+    unit = value_unit(series.y)
+    if unit == 1.0:
+        return _fit(series, preset, threshold, sigma, level, seed, options)
+    magnified = dataclasses.replace(series, y=series.y / unit)
+    threshold = None if threshold is None else min(threshold / unit, LARGEST_VALUE)
+    sigma = None if sigma is None else min(sigma / unit, LARGEST_VALUE)
+    trend = _fit(magnified, preset, threshold, sigma, level, seed, options)
+    return trend if isinstance(trend, NoFit) else in_value_units(trend, unit)
 
 
 def _fit(
@@ -129,26 +150,32 @@ def _fit(
     quantisation = find_quantisation(series.y, series.t)
     scale = _settle_scale(data, preset, threshold, sigma, quantisation, options)
     if isinstance(scale, NoFit):
-        return dataclasses.replace(scale, points=unlabelled_rows(series), notices=input_notices(series))
+        return _no_fit(scale.reason, scale.message, series)
     found = preset.search.run(data, scale, options, seed)
     if isinstance(found, NoFit):
-        return dataclasses.replace(found, points=unlabelled_rows(series), notices=input_notices(series))
+        return _no_fit(found.reason, found.message, series)
     root = None if series.weights is None else np.sqrt(series.weights)
-    spread = _uncertainty(data, found, root, options)
+    sums = found.sums
+    if sums is None:
+        sums = influence_sums(data.t, data.y, found.residual, root, found.sigma, found.threshold, found.loss)
+    spread = line_uncertainty(
+        sums,
+        series.n,
+        found.sigma,
+        found.spread,
+        correct_serial_correlation=options.correct_serial_correlation,
+    )
     geometry = line_geometry(found.theta, frame, spread, found.sigma, series)
     dof = None if spread is None else spread.dof
-    is_time = series.axis.kind == "datetime"
-    origin = np.datetime64(series.axis.origin) if is_time else 0.0
-    intercept_at = 0.0 if is_time else -float(series.axis.origin)
+    origin, intercept_at = _origin(series)
     parameters = line_parameters(geometry, intercept_at, level, dof)
     probability = found.probability
     if probability is None:
         probability = inlier_probability(found.residual, root, max(found.sigma, scale.floor))
-    inliers = int(np.count_nonzero(found.inlier))
-    r2, rmse = fit_quality(series.y, found.residual, found.inlier)
+    inliers = int(sums[INLIERS])
+    r2, rmse = fit_quality(sums)
     runner_up = find_runner_up(data, found, preset, scale, options, seed, frame, intercept_at)
-    evidence = Evidence(series, preset, found, inliers, spread, quantisation, scale.floor, runner_up)
-    stderr = parameters["slope"].stderr
+    evidence = Evidence(series, preset, found, inliers, spread, quantisation, scale.floor, rmse, runner_up)
     return Trend(
         model="line",
         parameters=parameters,
@@ -168,8 +195,8 @@ def _fit(
             search=found.search,
             seed=seed,
         ),
-        uncertainty=_describe(spread, level, options),
-        p_value=two_sided_p(geometry.slope / stderr if stderr else math.inf, dof),
+        uncertainty=_describe(spread, level),
+        p_value=two_sided_p(_statistic(geometry.slope, geometry.slope_stderr), dof),
         r2=r2,
         rmse=rmse,
         runner_up=runner_up,
@@ -189,7 +216,7 @@ def _settle_scale(
     quantisation: Quantisation,
     options: RobustOptions,
 ) -> Scale | NoFit:
-    """What is known of the noise before the search; a pilot finds it for methods that need a threshold."""
+    """Collect what is known of the noise before the search; a pilot finds what the method needs."""
     floor = scale_floor(data.y, quantisation)
     if sigma is not None:
         floor = min(floor, sigma)
@@ -207,25 +234,23 @@ def _settle_scale(
     return Scale(least, pilot.sigma_source, options.threshold_sigmas * least, "sigma", floor)
 
 
-def _uncertainty(
-    data: LineData, found: Found, root: FloatArray | None, options: RobustOptions
-) -> LineUncertainty | None:
-    return line_uncertainty(
-        data.t,
-        found.residual,
-        root,
-        found.sigma,
-        found.threshold,
-        found.loss,
-        correct_serial_correlation=options.correct_serial_correlation,
-    )
+def _origin(series: Series) -> tuple[float | np.datetime64, float]:
+    """Time at which the intercept is taken: the caller's and the internal one."""
+    first = series.axis.origin
+    return (first, 0.0) if isinstance(first, np.datetime64) else (0.0, -float(first))
 
 
-def _describe(spread: LineUncertainty | None, level: float, options: RobustOptions) -> Uncertainty:
+def _statistic(slope: float, stderr: float) -> float:
+    """Slope in standard errors; a level line without noise has none to show."""
+    if stderr == 0.0:
+        return math.copysign(math.inf, slope) if slope else 0.0
+    return slope / stderr
+
+
+def _describe(spread: LineUncertainty | None, level: float) -> Uncertainty:
     if spread is None:
         return Uncertainty("none", level, None, None, None)
-    name = "effective-n" if options.correct_serial_correlation else "sandwich"
-    return Uncertainty(name, level, spread.effective_n, spread.lag1, spread.dof)
+    return Uncertainty(spread.method, level, spread.effective_n, spread.lag1, spread.dof)
 
 
 def _refuse(series: Series) -> NoFit | None:
@@ -238,25 +263,9 @@ def _refuse(series: Series) -> NoFit | None:
         reason, message = NoFitReason.constant_time, "All times are equal; a line needs two different times."
     else:
         return None
-    return NoFit(reason, message, unlabelled_rows(series), input_notices(series))
+    return _no_fit(reason, message, series)
 
 
-def _preset(method: str) -> Preset:
-    preset = PRESETS.get(method)
-    if preset is None:
-        raise InputError("method", f"unknown method {method!r}; {_suggest(method, PRESETS)}")
-    return preset
-
-
-def _suggest(name: str, known: object) -> str:
-    names = list(known)  # type: ignore[call-overload]
-    close = difflib.get_close_matches(str(name), names, n=1)
-    hint = f"did you mean {close[0]!r}? " if close else ""
-    return f"{hint}known: {', '.join(names)}"
-
-
-def _check_positive(field: str, value: float | None) -> None:
-    if value is None:
-        return
-    if isinstance(value, bool) or not math.isfinite(value) or value <= 0:
-        raise InputError(field, "must be a positive finite number")
+def _no_fit(reason: NoFitReason, message: str, series: Series) -> NoFit:
+    points, notices = unlabelled_rows(series), input_notices(series)
+    return NoFit(reason, message, points, notices, series.input_time, series.input_values)

@@ -25,10 +25,10 @@ def label_rows(series: Series, inlier: BoolArray, probability: FloatArray, resid
     inlier, probability, residual : ndarray, shape (m,)
         Per usable point, in the order of time.
     """
-    codes = series.reasons.copy()
     if series.rows is None:
-        codes[~inlier] = Reason.outlier
-        return Points(inlier, probability, residual, codes)
+        # Every row took part and is ok (0) or an outlier (1): the reason is the flag turned round.
+        return Points(inlier, probability, residual, np.logical_not(inlier).view(np.uint8))
+    codes = series.reasons.copy()
     n = series.n_input
     points = Points(np.zeros(n, dtype=np.bool_), np.full(n, np.nan), np.full(n, np.nan), codes)
     rows = series.rows

@@ -33,14 +33,14 @@ class Frame:
         return cls(0.5 * (float(t[-1]) + float(t[0])), half)
 
     def apply(self, t: FloatArray) -> FloatArray:
-        """Times in [-1, 1]."""
+        """Map times to [-1, 1]."""
         return np.asarray((t - self.middle) / self.half)
 
 
 def line_geometry(
     theta: FloatArray, frame: Frame, uncertainty: LineUncertainty | None, sigma: float, series: Series
 ) -> LineGeometry:
-    """Line and its variances in the units of the series.
+    """Line and its standard errors in the units of the series.
 
     Parameters
     ----------
@@ -56,8 +56,8 @@ def line_geometry(
         center=frame.middle + frame.half * center,
         level=float(theta[0] + theta[1] * center),
         slope=float(theta[1]) / frame.half,
-        level_variance=math.nan if uncertainty is None else uncertainty.level_variance,
-        slope_variance=math.nan if uncertainty is None else uncertainty.slope_variance / frame.half**2,
+        level_stderr=math.nan if uncertainty is None else math.sqrt(uncertainty.level_variance),
+        slope_stderr=math.nan if uncertainty is None else math.sqrt(uncertainty.slope_variance) / frame.half,
         sigma=sigma,
         span=(float(series.t[0]), float(series.t[-1])),
     )
@@ -80,16 +80,16 @@ def line_parameters(
     """
     away = intercept_at - line.center
     intercept = line.level + line.slope * away
-    variance = line.level_variance + line.slope_variance * away * away
+    # hypot: standard errors of tiny values have squares that underflow.
+    stderr = math.hypot(line.level_stderr, line.slope_stderr * away)
     return {
-        "slope": _estimate(line.slope, line.slope_variance, level, dof),
-        "intercept": _estimate(intercept, variance, level, dof),
+        "slope": _estimate(line.slope, line.slope_stderr, level, dof),
+        "intercept": _estimate(intercept, stderr, level, dof),
     }
 
 
-def _estimate(value: float, variance: float, level: float, dof: float | None) -> Estimate:
+def _estimate(value: float, stderr: float, level: float, dof: float | None) -> Estimate:
     if dof is None:
         return Estimate(value, None, None, None)
-    stderr = math.sqrt(variance)
     half = student_quantile(level, dof) * stderr
     return Estimate(value, stderr, value - half, value + half)

@@ -33,6 +33,7 @@ class Evidence:
     spread: LineUncertainty | None
     quantisation: Quantisation
     floor: float
+    rmse: float | None
     runner_up: RunnerUp | None
 
 
@@ -66,7 +67,7 @@ def collect_notices(seen: Evidence) -> tuple[Notice, ...]:
         notices.append(notice(NoticeCode.few_points, points=n))
     if float(seen.series.y.min()) == float(seen.series.y.max()):
         notices.append(notice(NoticeCode.constant_values))
-    elif n > 2 and found.sigma <= 4.0 * seen.floor and not seen.quantisation.is_quantised:
+    elif n > 2 and _is_exact(seen):
         notices.append(notice(NoticeCode.zero_noise, sigma=found.sigma))
     if seen.quantisation.is_quantised and seen.quantisation.quantum > COARSE_QUANTUM * found.sigma:
         notices.append(notice(NoticeCode.quantised_values, quantum=seen.quantisation.quantum))
@@ -82,3 +83,11 @@ def collect_notices(seen: Evidence) -> tuple[Notice, ...]:
     if seen.runner_up is not None and seen.runner_up.equally_good:
         notices.append(notice(NoticeCode.ambiguous_structure, **dict(seen.runner_up.parameters)))
     return tuple(notices)
+
+
+def _is_exact(seen: Evidence) -> bool:
+    """Whether the inliers are as near to the line as arithmetic can tell, and not because of rounding."""
+    if seen.quantisation.is_quantised:
+        return False
+    nearest = seen.found.sigma if seen.rmse is None else min(seen.found.sigma, seen.rmse)
+    return nearest <= 4.0 * seen.floor

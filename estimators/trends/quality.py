@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
+from estimators.arrays import FloatArray
+from estimators.regression.influence import INLIERS, SSE, VALUE, VALUE_SQUARE
 
-from estimators.arrays import BoolArray, FloatArray
+_LEAST_VARIATION = 1e-20
+"""Of the squared values: below it their variation is rounding."""
 
 
-def fit_quality(y: FloatArray, residual: FloatArray, inlier: BoolArray) -> tuple[float | None, float | None]:
+def fit_quality(sums: FloatArray) -> tuple[float | None, float | None]:
     """R2 and root mean square error on inliers.
 
     Parameters
     ----------
-    y, residual : ndarray of float64, shape (n,)
-    inlier : ndarray of bool, shape (n,)
+    sums : ndarray of float64
+        From :func:`estimators.regression.influence.influence_sums`.
 
     Returns
     -------
@@ -24,11 +26,10 @@ def fit_quality(y: FloatArray, residual: FloatArray, inlier: BoolArray) -> tuple
     rmse : float or None
         sqrt(SSE / inliers).
     """
-    kept = residual[inlier]
-    if kept.size == 0:
+    inliers = float(sums[INLIERS])
+    if inliers == 0:
         return None, None
-    values = y[inlier]
-    sse = float(np.sum(kept * kept))
-    centred = values - values.mean()
-    sst = float(np.sum(centred * centred))
-    return (1.0 - sse / sst if sst > 0 else None), math.sqrt(sse / kept.size)
+    sse = float(sums[SSE])
+    sst = float(sums[VALUE_SQUARE]) - float(sums[VALUE]) ** 2 / inliers
+    varies = sst > _LEAST_VARIATION * float(sums[VALUE_SQUARE])
+    return (1.0 - sse / sst if varies else None), math.sqrt(sse / inliers)

@@ -6,6 +6,7 @@ line sets the same ones in colour.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -16,6 +17,7 @@ import numpy as np
 from estimators.arrays import IntArray
 from estimators.inference.intervals import student_quantile
 from estimators.result import Estimate
+from estimators.time_axis import TimeAxis
 from estimators.trends.facts import facts, notice_lines, slope_unit
 from estimators.trends.units import MISSING, SECOND, moment_text, p_value_text, rounded, significant
 
@@ -130,12 +132,17 @@ def _level_amid(trend: Trend) -> tuple[float, Estimate] | None:
     at_zero = -float(trend.axis.origin)
     if first - (last - first) <= at_zero <= last + (last - first):
         return None
-    center = float(trend.axis.origin) + line.center
-    stderr = math.sqrt(line.level_variance)
-    half = student_quantile(trend.uncertainty.level, trend.uncertainty.dof) * stderr
-    if not math.isfinite(half):
-        return center, Estimate(line.level, None, None, None)
-    return center, Estimate(line.level, stderr, line.level - half, line.level + half)
+    origin, internal = float(trend.axis.origin), line.center
+    # A round time amid the data reads better than their very center, if floats that large can be round.
+    step = 10.0 ** math.floor(math.log10(last - first) - 1)
+    if math.ulp(origin) < step:
+        internal = round((origin + internal) / step) * step - origin
+    there = dataclasses.replace(trend, axis=TimeAxis("number", 0.0)).predict([internal])
+    value, low, high = float(there.value[0]), float(there.confidence_low[0]), float(there.confidence_high[0])
+    if not math.isfinite(high):
+        return origin + internal, Estimate(value, None, None, None)
+    stderr = (high - value) / student_quantile(trend.uncertainty.level, trend.uncertainty.dof)
+    return origin + internal, Estimate(value, stderr, low, high)
 
 
 def _equation(trend: Trend, time_name: str, value_name: str) -> str:

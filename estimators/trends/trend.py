@@ -24,8 +24,9 @@ from estimators.result import (
     notice,
     notice_to_dict,
 )
-from estimators.time_axis import TimeAxis, as_moments
+from estimators.time_axis import TimeAxis
 from estimators.trends import presentation
+from estimators.trends.unpack import plain_column
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -97,8 +98,8 @@ class LineGeometry:
         Time, since ``axis.origin``, at which level and slope are uncorrelated.
     level, slope : float
         Value at the center; change per unit of time.
-    level_variance, slope_variance : float
-        NaN where unknown.
+    level_stderr, slope_stderr : float
+        Standard errors; NaN where unknown.
     sigma : float
     span : tuple of float
         First and last time of the data, since ``axis.origin``.
@@ -107,8 +108,8 @@ class LineGeometry:
     center: float
     level: float
     slope: float
-    level_variance: float
-    slope_variance: float
+    level_stderr: float
+    slope_stderr: float
     sigma: float
     span: tuple[float, float]
 
@@ -166,8 +167,8 @@ class Trend:
 
         Parameters
         ----------
-        times : array_like, shape (k,)
-            Of the same kind as the series.
+        times : array_like, shape (k,), or one time
+            Of the same kind as the series; points in time may be ISO 8601.
         level : float, optional
             Confidence level; default that of the fit.
 
@@ -178,7 +179,7 @@ class Trend:
         Raises
         ------
         InputError
-            If the times are of another kind, or the level is not between 0 and 1.
+            If the times are of another kind or too large, or the level is not between 0 and 1.
 
         Examples
         --------
@@ -191,14 +192,14 @@ class Trend:
         wanted = self.uncertainty.level if level is None else float(level)
         if not 0 < wanted < 1:
             raise InputError("level", "must lie between 0 and 1, both excluded")
-        asked = np.atleast_1d(as_moments(times) if self.axis.kind == "datetime" else np.asarray(times))
-        internal = np.atleast_1d(self.axis.to_internal(asked))
+        asked, internal = self.axis.read(plain_column(times))
         line = self.geometry
         value = line.level + line.slope * (internal - line.center)
-        trend_variance = line.level_variance + line.slope_variance * (internal - line.center) ** 2
+        # hypot: standard errors of tiny values have squares that underflow.
+        stderr = np.hypot(line.level_stderr, line.slope_stderr * (internal - line.center))
         quantile = student_quantile(wanted, self.uncertainty.dof)
-        half = quantile * np.sqrt(trend_variance)
-        wide = quantile * np.sqrt(trend_variance + line.sigma**2)
+        half = quantile * stderr
+        wide = quantile * np.hypot(stderr, line.sigma)
         outside = (internal < line.span[0]) | (internal > line.span[1])
         notices = (
             (notice(NoticeCode.extrapolation, times=int(np.count_nonzero(outside))),)

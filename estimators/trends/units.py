@@ -96,7 +96,7 @@ def rounded(value: float, uncertainty: float | None) -> str:
         return f"{value:.6g}"
     last = math.floor(math.log10(uncertainty)) - 1
     first = math.floor(math.log10(abs(value)))
-    if first - last > 9:
+    if first - last > 6:
         return f"{value:.7g}"
     largest = max(first, last + 1)
     if -4 <= largest < 7:

@@ -10,7 +10,7 @@ from estimators.arrays import ArrayLike, InputError
 
 
 def unpack_series(t: ArrayLike, y: ArrayLike | None) -> tuple[Any, Any]:
-    """Times and values of two columns or of one indexed series.
+    """Take apart two columns, or one indexed series, into times and values.
 
     A pandas Series is known by its ``index`` and ``to_numpy``; pandas is not imported. Times with a time
     zone are converted to UTC, which loses nothing that a fit could use.
@@ -29,12 +29,22 @@ def unpack_series(t: ArrayLike, y: ArrayLike | None) -> tuple[Any, Any]:
     if y is None:
         if not hasattr(t, "index") or not hasattr(t, "to_numpy"):
             raise InputError("y", "give values, or a pandas Series with its times as the index")
-        return _plain(t.index), _plain(t)
-    return _plain(t), _plain(y)
+        return plain_column(t.index), plain_column(t)
+    return plain_column(t), plain_column(y)
 
 
-def _plain(column: Any) -> Any:
-    """Numpy array of a pandas column or index; anything else as it is."""
+def plain_column(column: Any) -> Any:
+    """Convert a pandas column or index to a numpy array; anything else stays as it is.
+
+    Parameters
+    ----------
+    column : array_like
+        Missing entries of nullable integers become None, which leaves the others exact; of other numbers NaN.
+
+    Returns
+    -------
+    ndarray or the column itself
+    """
     if not hasattr(column, "to_numpy"):
         return column
     converted = column
@@ -43,14 +53,10 @@ def _plain(column: Any) -> Any:
         converted = column.tz_convert("UTC").tz_localize(None)
     elif accessor is not None and getattr(accessor, "tz", None) is not None:
         converted = accessor.tz_convert("UTC").dt.tz_localize(None)
-    try:
-        return converted.to_numpy(na_value=np.nan) if _is_nullable(converted) else converted.to_numpy()
-    except (TypeError, ValueError):
+    # Only pandas' nullable number types (Int64, Float64) say which numpy type is under them.
+    nullable = getattr(getattr(converted, "dtype", None), "numpy_dtype", None)
+    if nullable is None or nullable.kind not in "iuf" or not converted.isna().any():
         return converted.to_numpy()
-
-
-def _is_nullable(column: Any) -> bool:
-    """Whether a pandas column has a nullable number type (``Int64``, ``Float64``)."""
-    return getattr(getattr(column, "dtype", None), "na_value", None) is not None and hasattr(
-        column.dtype, "numpy_dtype"
-    )
+    if nullable.kind == "f":
+        return converted.to_numpy(dtype=np.float64, na_value=np.nan)
+    return converted.to_numpy(dtype=object, na_value=None)

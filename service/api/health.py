@@ -6,7 +6,7 @@ from fastapi import APIRouter, Request, Response
 from fastapi.responses import PlainTextResponse
 
 from service.compute import Warmth
-from service.errors import Problem, ProblemType
+from service.errors import ProblemType
 from service.observability.metrics import METRICS_MEDIA_TYPE, Metrics
 from service.schemas.answers import HealthAnswer, ReadyAnswer
 from service.schemas.problems import problem_responses
@@ -29,12 +29,9 @@ async def health() -> HealthAnswer:
 async def ready(request: Request) -> ReadyAnswer:
     """200 once all compiled code is loaded, so that no fit waits for a compiler; 503 until then."""
     warmth: Warmth = request.app.state.warmth
-    if warmth.is_ready:
-        return ReadyAnswer(status="ready", kernels=warmth.total)
-    if warmth.has_failed:
-        raise Problem(ProblemType.not_ready, "compiled code could not be loaded; the log tells why")
-    detail = f"{warmth.loaded} of {warmth.total or 'all'} compiled functions are loaded"
-    raise Problem(ProblemType.not_ready, detail, headers={"Retry-After": "1"})
+    if not warmth.is_ready:
+        raise warmth.not_ready()
+    return ReadyAnswer(status="ready", kernels=warmth.total)
 
 
 @router.get(

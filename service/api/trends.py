@@ -8,8 +8,9 @@ from fastapi import APIRouter, Query, Request, Response
 
 from estimators import InputError, NoFit, RobustOptions, Trend, fit_trend
 from estimators.consensus.cancellation import cancelled_by
-from estimators.result import notice_to_dict
+from estimators.result import NoFitReason, notice_to_dict
 from service.codecs.columns import Columns
+from service.codecs.limits import check_columns
 from service.codecs.registry import WRITERS, Read, Writer, choose_reader, choose_writer
 from service.compute import Compute, Patience
 from service.errors import FieldError, Problem, ProblemType, invalid_value
@@ -66,6 +67,7 @@ RESPONSES: dict[int | str, dict[str, Any]] = {
         ProblemType.unknown_field,
         ProblemType.no_fit,
         ProblemType.busy,
+        ProblemType.not_ready,
         ProblemType.deadline_exceeded,
     ),
 }
@@ -96,6 +98,7 @@ async def fit(request: Request, query: Annotated[TrendQuery, Query()]) -> Respon
     settings: Settings = request.app.state.settings
     metrics: Metrics = request.app.state.metrics
     watch = Stopwatch()
+    await request.app.state.warmth.wait(settings.queue_seconds)
 
     def job(patience: Patience) -> tuple[bytes, int]:
         return answer(body, reader, writer, query, settings.max_points, watch, patience)
@@ -134,7 +137,7 @@ def answer(
     """
     with watch.phase("parse"):
         columns, arguments = reader(body, query)
-        columns.check(max_points)
+        check_columns(columns, max_points)
     patience.check()
     with watch.phase("fit"), cancelled_by(patience.flag):
         trend = fit_columns(columns, arguments)
@@ -177,7 +180,7 @@ def no_fit(found: NoFit) -> Problem:
     return Problem(
         ProblemType.no_fit,
         found.message,
-        errors=[FieldError("value", found.message)],
+        errors=[FieldError("time" if found.reason is NoFitReason.constant_time else "value", found.message)],
         extra={
             "reason": found.reason.value,
             "points": {"reason": found.points.reason},

@@ -12,16 +12,15 @@ from service.cli.streams import answers
 
 def show_methods() -> None:
     """Print every method with what it does and when to use it."""
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_lines=True, header_style="dim")
-    table.add_column("method", style="bold cyan", no_wrap=True)
-    table.add_column("what it does", ratio=3)
-    table.add_column("when to use it", ratio=3)
-    table.add_column("source", style="dim", ratio=2)
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 1, 0), show_header=False)
+    table.add_column(style="bold cyan", no_wrap=True)
+    table.add_column()
     for row in estimators.methods().values():
-        what = Text.assemble((row.title, "bold"), "\n", row.summary)
+        text = Text.assemble((row.title, "bold"), "\n", row.summary, "\n", ("When: ", "dim"), row.when_to_use)
         if not row.robust:
-            what.append("\nNot robust: outliers can move it.", style="yellow")
-        table.add_row(Text(row.name), what, Text(row.when_to_use), Text(row.source))
+            text.append("\nNot robust: outliers can move it.", style="yellow")
+        text.append(f"\nSource: {row.source}", style="dim")
+        table.add_row(Text(row.name), text)
     answers().print(table)
 
 

@@ -4,15 +4,24 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from service.codecs.columns import Columns, TimeForm, Times, from_epoch
 from service.codecs.table import TableError
-from service.codecs.table_cells import CellError, Floats, Integers, read_integers, read_moments, read_numbers
+from service.codecs.table_cells import (
+    CellError,
+    Floats,
+    Integers,
+    is_number,
+    read_integers,
+    read_moments,
+    read_numbers,
+)
 from service.errors import Problem
 
-_YEAR = re.compile(r"\d{4}")
+_YEAR = re.compile(r"\s*\d{4}\s*")
 
 
 def read_moment_like(columns: Columns, texts: Sequence[str], option: str) -> Times:
@@ -22,7 +31,7 @@ def read_moment_like(columns: Columns, texts: Sequence[str], option: str) -> Tim
     ----------
     columns : Columns
         Of the table: dates are taken where its times are dates (a year is its first day), numbers where
-        they are numbers, both where they are numbers since 1970.
+        they are numbers, either where they are numbers since 1970.
     texts : sequence of str, length k
     option : str
         Named in errors.
@@ -37,33 +46,31 @@ def read_moment_like(columns: Columns, texts: Sequence[str], option: str) -> Tim
     TableError
         If a text is not such a time.
     """
-    form = columns.form
+    moments: Any = [_read(text, columns.form, option) for text in texts]
+    joined: Times = np.concatenate(moments)
+    return joined.astype(np.float64) if columns.time.dtype.kind == "f" else joined
+
+
+def _read(text: str, form: TimeForm, option: str) -> Times:
+    """One time, as an array of one."""
     try:
-        if form.kind == "iso" or (form.kind == "epoch" and not all(map(_looks_like_a_number, texts))):
-            return read_moments(
-                [f"{text}-01-01" if _YEAR.fullmatch(text.strip()) else text for text in texts]
-            )
-        numbers = _numbers(texts)
-        if form.kind == "epoch" and form.unit is not None:
-            return from_epoch(numbers, form.unit, option)
+        if form.kind == "iso" or (form.kind == "epoch" and not is_number(text, decimal_comma=False)):
+            return read_moments([f"{text.strip()}-01-01" if _YEAR.fullmatch(text) else text])
+        number = _number(text)
+        if form.unit is not None:
+            return from_epoch(number, form.unit, option)
     except CellError as error:
-        raise TableError(f"{option} {texts[error.row]!r}: {_expected(form)}") from error
+        raise TableError(f"{option} {text!r}: {_expected(form)}") from error
     except Problem as problem:
-        row = problem.errors[0].row or 0
-        raise TableError(f"{option} {texts[row]!r} {problem.errors[0].message}") from problem
-    unusable = np.flatnonzero(~np.isfinite(numbers))
-    if unusable.size:
-        raise TableError(f"{option} {texts[unusable[0]]!r}: {_expected(form)}")
-    return numbers if columns.time.dtype.kind == numbers.dtype.kind else numbers.astype(np.float64)
+        raise TableError(f"{option} {text!r} {problem.errors[0].message}") from problem
+    if not np.isfinite(number).all():
+        raise TableError(f"{option} {text!r}: {_expected(form)}")
+    return number
 
 
-def _looks_like_a_number(text: str) -> bool:
-    return read_integers([text]) is not None or text.replace(".", "", 1).lstrip("+-").isdigit()
-
-
-def _numbers(texts: Sequence[str]) -> Floats | Integers:
-    integers = read_integers(texts)
-    return read_numbers(texts, decimal_comma=False) if integers is None else integers
+def _number(text: str) -> Floats | Integers:
+    integer = read_integers([text])
+    return read_numbers([text], decimal_comma=False) if integer is None else integer
 
 
 def _expected(form: TimeForm) -> str:

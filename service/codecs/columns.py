@@ -8,7 +8,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from service.errors import Problem, ProblemType, invalid_value
+from service.errors import invalid_value
 from service.schemas.options import TimeUnit
 
 Times: TypeAlias = npt.NDArray[np.float64] | npt.NDArray[np.int64] | npt.NDArray[np.datetime64]
@@ -73,48 +73,27 @@ class Columns:
     predict: Times | None
     form: TimeForm
 
-    def check(self, max_points: int) -> None:
-        """Check that the columns belong together and are not too long, and make them read-only.
 
-        Raises
-        ------
-        Problem
-            On empty or unequal columns, negative weights, missing times to predict at, or more rows than
-            ``max_points``.
-        """
-        rows = self.time.size
-        if rows == 0:
-            raise invalid_value("time", "is empty; send at least one row")
-        longest = max(rows, self.value.size, 0 if self.predict is None else self.predict.size)
-        if longest > max_points:
-            raise Problem(
-                ProblemType.too_many_points,
-                f"{longest} rows; at most {max_points} are taken",
-                extra={"limit": max_points},
-            )
-        if self.value.size != rows:
-            raise invalid_value(
-                "value", f"{self.value.size} values for {rows} times; send one value per time"
-            )
-        if self.weight is not None:
-            if self.weight.size != rows:
-                raise invalid_value(
-                    "weight", f"{self.weight.size} weights for {rows} times; send one per time"
-                )
-            bad = ~(self.weight >= 0)
-            if np.any(bad):
-                raise invalid_value(
-                    "weight", "weights are precisions: numbers that are not negative", int(np.argmax(bad))
-                )
-        if self.predict is not None and np.any(np.isnan(self.predict)):
-            raise invalid_value("predict", "a time is missing", int(np.argmax(np.isnan(self.predict))))
-        for column in (self.time, self.value, self.weight, self.predict):
-            if column is not None:
-                column.flags.writeable = False
-
-
-def from_epoch(numbers: npt.NDArray[np.float64] | npt.NDArray[np.int64], unit: TimeUnit, field: str) -> Times:
+def from_epoch(
+    numbers: npt.NDArray[np.float64] | npt.NDArray[np.int64],
+    unit: TimeUnit,
+    field: str,
+    missing: npt.NDArray[np.bool_] | None = None,
+) -> Times:
     """Epoch numbers to datetime64[ns]; integers exactly, fractions to the nearest nanosecond.
+
+    Parameters
+    ----------
+    numbers : ndarray of float64 or int64, shape (n,)
+    unit : {"s", "ms", "us", "ns"}
+    field : str
+        Name used in errors.
+    missing : ndarray of bool, shape (n,), optional
+        Rows to become NaT; default: where the numbers are NaN.
+
+    Returns
+    -------
+    ndarray of datetime64[ns], shape (n,)
 
     Raises
     ------
@@ -122,7 +101,7 @@ def from_epoch(numbers: npt.NDArray[np.float64] | npt.NDArray[np.int64], unit: T
         If a number lies outside of the years that nanoseconds can reach.
     """
     factor = UNIT_NANOSECONDS[unit]
-    missing = np.isnan(numbers) if numbers.dtype.kind == "f" else np.zeros(numbers.shape, dtype=np.bool_)
+    missing = np.isnan(numbers) if missing is None else missing
     limit = NANOSECOND_LIMIT // factor
     outside = ~missing & ((numbers > limit) | (numbers < -limit))
     if np.any(outside):

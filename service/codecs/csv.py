@@ -190,8 +190,10 @@ def _times(cells: Sequence[str], field: str, unit: TimeUnit | None) -> tuple[Tim
         return parse_iso([None if cell.lower() in MISSING else cell for cell in stripped], field), TimeForm(
             "iso"
         )
-    integers = _plain_integers(cells)
-    numbers = _floats(cells, field) if integers is None else integers
     if unit is None:
-        return numbers, TimeForm("number")
-    return from_epoch(numbers, unit, field), TimeForm("epoch", unit)
+        integers = _plain_integers(cells)
+        return (_floats(cells, field) if integers is None else integers), TimeForm("number")
+    missing = np.array([cell.strip().lower() in MISSING for cell in cells], dtype=np.bool_)
+    integers = _plain_integers(["0" if gone else cell for cell, gone in zip(cells, missing, strict=True)])
+    numbers = _floats(cells, field) if integers is None else integers
+    return from_epoch(numbers, unit, field, missing), TimeForm("epoch", unit)

@@ -55,6 +55,7 @@ _ANY = msgspec.json.Decoder(Any)
 
 _BYTE = re.compile(r"\(byte (\d+)\)")
 _ROW = re.compile(r"\$\[(\d+)\]")
+_NOT_FINITE = re.compile(rb"-?(nan|inf)", re.IGNORECASE)
 _OPEN_COLUMN = re.compile(rb'"(time|value|weight|predict)"\s*:\s*\[[^\]]*\Z')
 
 
@@ -145,9 +146,7 @@ def _malformed(body: bytes, error: Exception) -> Problem:
         return Problem(ProblemType.malformed_body, "the JSON ends before it is complete")
     place = int(found[1])
     column = _OPEN_COLUMN.search(body, 0, place)
-    if column is not None and re.match(
-        rb"-?(NaN|Inf|nan|inf)", body[max(place - 1, 0) : place + 4].lstrip(b"[, \n\t")
-    ):
+    if column is not None and _NOT_FINITE.match(body, place):
         return invalid_value(
             column[1].decode(),
             "NaN and Infinity are not JSON; send null for a missing value",
@@ -192,27 +191,31 @@ def _read_times(
             row = next(row for row, item in enumerate(column) if isinstance(item, int | float))
             raise invalid_value(name, "mixes text and numbers; write all times in one form", row)
         return parse_iso(column, name), TimeForm("iso")
-    numbers = _as_numbers(column, kinds, name)
     if unit is None:
-        return numbers, TimeForm("number")
-    return from_epoch(numbers, unit, name), TimeForm("epoch", unit)
+        exact = kinds == {int} and None not in column
+        return (_integers if exact else _floats)(column, name), TimeForm("number")
+    if kinds != {int}:
+        return from_epoch(_floats(column, name), unit, name), TimeForm("epoch", unit)
+    missing = np.array([item is None for item in column])
+    whole = _integers([0 if item is None else item for item in column], name)
+    return from_epoch(whole, unit, name, missing), TimeForm("epoch", unit)
 
 
-def _as_numbers(
-    column: list[Any], kinds: set[type], name: str
-) -> npt.NDArray[np.float64] | npt.NDArray[np.int64]:
-    """Numbers as int64 where all are integers, so that nothing is rounded."""
-    if kinds != {int} or None in column:
-        try:
-            return np.array(column, dtype=np.float64)
-        except OverflowError:
-            row = next(row for row, item in enumerate(column) if isinstance(item, int) and abs(item) >= 2**63)
-            raise invalid_value(name, "is too large a number", row) from None
+def _integers(column: list[Any], name: str) -> npt.NDArray[np.int64]:
     try:
         return np.array(column, dtype=np.int64)
     except OverflowError:
         row = next(row for row, item in enumerate(column) if not -(2**63) <= item < 2**63)
         raise invalid_value(name, "integers must fit into 64 bits", row) from None
+
+
+def _floats(column: list[Any], name: str) -> npt.NDArray[np.float64]:
+    try:
+        return np.array(column, dtype=np.float64)
+    except OverflowError:
+        # An integer of more than 308 digits is the only number that msgspec takes and a float cannot hold.
+        row = next(row for row, item in enumerate(column) if isinstance(item, int) and abs(item) >= 10**308)
+        raise invalid_value(name, "is too large a number for a 64-bit float", row) from None
 
 
 def _decode_column(decoder: msgspec.json.Decoder[Any], raw: msgspec.Raw, name: str) -> list[Any]:

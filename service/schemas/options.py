@@ -15,6 +15,7 @@ from pydantic_core import PydanticCustomError
 
 import estimators
 from estimators import RobustOptions
+from estimators.arrays import LARGEST_VALUE
 
 DEFAULTS = RobustOptions()
 METHOD_NAMES = tuple(estimators.methods())
@@ -61,7 +62,8 @@ Model = Annotated[
 Threshold = Annotated[
     float,
     Field(
-        gt=0,
+        ge=1 / LARGEST_VALUE,
+        le=LARGEST_VALUE,
         allow_inf_nan=False,
         description="Largest distance of an inlier, in units of the values. Default: estimated.",
     ),
@@ -69,7 +71,8 @@ Threshold = Annotated[
 Sigma = Annotated[
     float,
     Field(
-        gt=0,
+        ge=1 / LARGEST_VALUE,
+        le=LARGEST_VALUE,
         allow_inf_nan=False,
         description="Noise scale of an inlier, in units of the values. Default: estimated.",
     ),

@@ -3,9 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from benchmarks.bed import ALL_KINDS, FAMILIES, KINDS, Draw, draw_rng, make_series
+from benchmarks.bed import ALL_KINDS, FAMILIES, KINDS, Draw, draw_rng, make_series, true_inliers
 from benchmarks.families import ar1_noise
-from benchmarks.kinds import excursion_levels
 from benchmarks.kinds import excursion_levels
 
 KIND_NAMES = sorted(ALL_KINDS)
@@ -32,6 +31,13 @@ def _outlier_runs(draw: Draw) -> int:
 def test_a_series_has_exactly_the_asked_share_of_outliers(kind: str, n: int, share: float, seed: int) -> None:
     draw = make_series(kind, n, share, np.random.default_rng(seed))
     assert np.count_nonzero(~draw.inlier_mask) == round(share * n)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.2, 0.8])
+@pytest.mark.parametrize("kind", ["uniform", "step"])
+def test_the_number_of_true_inliers_is_known_beforehand(kind: str, share: float) -> None:
+    counts = [_draw(kind, n=500, share=share, index=index).inlier_mask.sum() for index in range(40)]
+    assert np.mean(counts) == pytest.approx(true_inliers(kind, 500, share), abs=5.0)
 
 
 @given(kind=st.sampled_from(KIND_NAMES), n=st.integers(10, 300), share=st.floats(0.0, 0.9))
@@ -88,14 +94,6 @@ def test_shifted_outliers_lie_on_one_side_at_least_four_sigma_away() -> None:
 @pytest.mark.parametrize("share", [0.2, 0.4, 0.6, 0.8])
 def test_bursts_are_at_most_three_runs(share: float) -> None:
     assert max(_outlier_runs(_draw("burst", share=share, index=i)) for i in range(50)) <= 3
-
-
-def test_the_levels_of_bursts_are_their_own() -> None:
-    for index in range(100):
-        levels = np.sort(excursion_levels(3, np.random.default_rng(index), nearest=8.0, apart=15.0))
-        assert np.abs(levels).min() >= 8.0
-        assert np.abs(levels).max() <= 60.0
-        assert np.diff(levels).min() >= 15.0
 
 
 def test_the_levels_of_bursts_are_their_own() -> None:

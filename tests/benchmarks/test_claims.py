@@ -2,6 +2,7 @@ import math
 
 import pytest
 
+from benchmarks.bed import true_inliers
 from benchmarks.cells import Cell
 from benchmarks.claims import Claim, check_claims, claim_cells, measure_claims
 from benchmarks.kinds import KINDS
@@ -22,14 +23,22 @@ def test_a_claim_says_what_it_wants(low: float, high: float, wanted: str) -> Non
 
 
 def test_every_cell_has_at_least_ten_true_inliers() -> None:
-    cells = claim_cells(1)
-    assert min(round((1 - cell.share) * cell.n) for cell in cells) >= 10
+    cells = claim_cells(1, 1)
+    assert min(true_inliers(cell.kind, cell.n, cell.share) for cell in cells) >= 10
     assert Cell("burst", 50, 0.8, 1) in cells
     assert Cell("burst", 50, 0.9, 1) not in cells
+    assert Cell("step", 50, 0.8, 1) not in cells
+
+
+def test_cells_that_a_claim_rests_on_get_all_draws_and_the_other_families_their_own() -> None:
+    draws = {(cell.kind, cell.n, cell.share): cell.draws for cell in claim_cells(8, 2)}
+    assert draws["burst", 200, 0.4] == draws["step", 200, 0.0] == draws["ar1_0.5", 200, 0.2] == 8
+    assert draws["step", 200, 0.2] == draws["clumps", 50, 0.4] == 2
+    assert {cell.kind for cell in claim_cells(8, 0)} == {*KINDS, "step", "ar1_0.5", "ar1_0.8"}
 
 
 def test_a_few_draws_of_the_bed_are_enough_to_check_every_claim() -> None:
-    results = measure_claims(1, seed=3, jobs=1, families=False)
+    results = measure_claims(1, family_draws=0, seed=3, jobs=1)
     claims = check_claims(results)
     assert {kind for kind, _, _ in results} > set(KINDS)
     assert len({claim.text for claim in claims}) == len(claims) == 14

@@ -1,4 +1,4 @@
-"""One answer whichever way it is computed: compiled or readable, alone or in a batch, on any number of threads."""
+"""One answer whichever way it is computed: compiled or readable, alone or in a batch, on any threads."""
 
 from __future__ import annotations
 

@@ -62,8 +62,8 @@ def test_models_with_equal_counts_are_told_apart_by_msac_and_not_by_the_count() 
 
 
 def test_ties_are_broken_by_inliers_then_squares() -> None:
-    ordered = [Value(1.0, 3, 9.0), Value(2.0, 5, 1.0), Value(2.0, 5, 2.0), Value(2.0, 4, 0.0)]
-    assert sorted(reversed(ordered), key=rank) == ordered
+    best, second, third, last = Value(1.0, 3, 9.0), Value(2.0, 5, 1.0), Value(2.0, 5, 2.0), Value(2.0, 4, 0.0)
+    assert sorted([last, second, best, third], key=rank) == [best, second, third, last]
 
 
 def test_the_earliest_of_equal_models_wins() -> None:
@@ -78,6 +78,7 @@ def test_bailing_out_changes_the_number_of_evaluations_and_nothing_else(
     search: SamplingSearch, n: int, seed: int, outliers: float
 ) -> None:
     data = contaminated(n, seed, outliers=outliers)
+    assert BailOut().lossless
     full = found(dataclasses.replace(search, verifier=Full()).run(data, given(0.03), MANY, seed))
     fast = found(dataclasses.replace(search, verifier=BailOut()).run(data, given(0.03), MANY, seed))
     assert fast.ledger.point_evaluations <= full.ledger.point_evaluations

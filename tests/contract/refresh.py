@@ -7,6 +7,7 @@ import sys
 
 from fastapi.testclient import TestClient
 
+from estimators import kernels
 from service.main import create_app
 from service.settings import Settings
 from tests.contract.examples import EXAMPLES, ask, content_of, load
@@ -14,6 +15,8 @@ from tests.contract.examples import EXAMPLES, ask, content_of, load
 
 def main() -> None:
     """Rewrite every example; the requests stay as they are."""
+    for _ in kernels.warm():
+        pass
     with TestClient(create_app(Settings(log_level="error"))) as client:
         for path in sorted(EXAMPLES.glob("*.json")):
             example = load(path)

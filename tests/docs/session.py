@@ -29,8 +29,9 @@ from tests.docs.blocks import ROOT, Block, Command, Example, parse_console
 from tests.docs.comparison import difference, tidy
 
 SERVICE_PORT = 8000
-START_SECONDS = 120
-BLOCK_SECONDS = 120
+# Long enough to compile every kernel, which is what happens first after an edit of one.
+START_SECONDS = 300
+BLOCK_SECONDS = 300
 
 _PORT = re.compile(r"(?<=127\.0\.0\.1:)80\d\d\b|(?<=--port )80\d\d\b|(?<=PLUMBLINE_PORT=)80\d\d\b")
 _END = re.compile(r"<end of command (?P<status>\d+)>\n")
@@ -115,9 +116,13 @@ class Session:
             lines.extend([*f"$ {command.text}".split("\n"), *shown])
         return Outcome(tuple(failures), tuple(differences), block.first, block.last, tuple(lines))
 
-    def _compare_announcement(self, where: str, block: Block, command: Command) -> Outcome:
+    def announcement(self) -> str:
+        """What the service printed when it was ready, with the port it really has."""
         self._move_ports(f"127.0.0.1:{SERVICE_PORT}")
-        actual = self._restore_ports(tidy((self.directory / "announced.txt").read_text()))
+        return tidy((self.directory / "announced.txt").read_text())
+
+    def _compare_announcement(self, where: str, block: Block, command: Command) -> Outcome:
+        actual = self._restore_ports(self.announcement())
         found = difference(command.expected, actual)
         differences = (f"{where}: {found}",) if found else ()
         lines = (f"$ {command.text}", *actual.split("\n"))
@@ -146,6 +151,7 @@ class Session:
             finally:
                 with contextlib.suppress(ProcessLookupError):
                     os.killpg(shell.pid, signal.SIGTERM)
+                shell.wait()
         printed = self._restore_ports(log.read_text())
         log.unlink()
         pieces = _END.split(printed)

@@ -61,7 +61,7 @@ def _settings() -> str:
     rows = []
     for name, setting in Settings.model_fields.items():
         meaning, stated = meanings[name]
-        default = stated or f"`{_plain(setting.get_default(call_default_factory=True))}`"
+        default = stated or _plain(setting.get_default(call_default_factory=True))
         rows.append((f"`PLUMBLINE_{name.upper()}`", default, meaning))
     return _markdown(("variable", "default", "meaning"), rows)
 
@@ -100,7 +100,7 @@ def _problems() -> str:
 
 def _plain(value: object) -> str:
     shown = value.get_secret_value() if isinstance(value, SecretStr) else value
-    return "none" if shown in ("", None) else str(shown)
+    return "none" if shown in ("", None) else f"`{shown}`"
 
 
 def _attributes(documented: type) -> dict[str, tuple[str, str]]:

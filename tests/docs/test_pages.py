@@ -1,4 +1,6 @@
+import json
 import re
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -24,6 +26,14 @@ def test_every_example_of_the_page_works_and_prints_what_the_page_shows(page: Pa
             outcome = session.run(page, example)
             problems += outcome.failures + outcome.differences
     assert problems == [], "`make docs` rewrites the outputs"
+
+
+def test_the_curl_line_that_the_service_prints_works_when_pasted(tmp_path: Path) -> None:
+    require_program("curl")
+    with open_session(tmp_path) as session:
+        (line,) = [line for line in session.announcement().splitlines() if line.strip().startswith("curl ")]
+        printed = subprocess.run(["bash", "-c", line], capture_output=True, text=True, check=True).stdout
+    assert json.loads(printed)["parameters"]["slope"]["value"] == pytest.approx(2.0, abs=0.1)
 
 
 @pytest.mark.parametrize("page", PAGES)

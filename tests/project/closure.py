@@ -32,18 +32,13 @@ def direct_requirements() -> list[Requirement]:
     return [item for item in requirements if canonicalize_name(item.name) != "plumbline"]
 
 
-def closure(*, complete: bool) -> dict[str, str]:
+def closure() -> dict[str, str]:
     """Version of every installed package that a direct requirement leads to, by canonical name.
-
-    Parameters
-    ----------
-    complete : bool
-        Whether every direct requirement must be installed, those of the benchmarks included.
 
     Raises
     ------
     PackageNotFoundError
-        If ``complete`` and a direct requirement is not installed.
+        If a direct requirement is not installed.
     """
     versions: dict[str, str] = {}
     seen: set[tuple[str, str]] = set()
@@ -55,7 +50,7 @@ def closure(*, complete: bool) -> dict[str, str]:
         try:
             found = distribution(name)
         except PackageNotFoundError:
-            if complete and name in direct:
+            if name in direct:
                 raise
             continue
         versions[name] = found.version
@@ -79,7 +74,7 @@ def pinned() -> dict[str, str]:
 
 def main() -> None:
     """Print the constraints, or write the file with ``--write``."""
-    text = HEADER + "".join(f"{name}=={version}\n" for name, version in closure(complete=True).items())
+    text = HEADER + "".join(f"{name}=={version}\n" for name, version in closure().items())
     if "--write" in sys.argv[1:]:
         CONSTRAINTS.write_text(text)
     else:

@@ -28,7 +28,5 @@ def test_every_requirement_of_pyproject_is_pinned_to_a_version_it_allows() -> No
 
 def test_what_is_installed_is_what_the_constraints_pin() -> None:
     versions = pinned()
-    # The peers of the benchmarks need not be here to run the tests.
-    installed = closure(complete=False)
-    different = {name: version for name, version in installed.items() if versions.get(name) != version}
+    different = {name: version for name, version in closure().items() if versions.get(name) != version}
     assert different == {}, "run `make test`, or `make constraints` after an upgrade"

@@ -7,10 +7,18 @@ import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
+from estimators import kernels
 from service.main import create_app
 from service.settings import Settings
 
 MakeClient = Callable[..., TestClient]
+
+
+@pytest.fixture(scope="session", autouse=True)
+def warm_kernels() -> None:
+    """Compile once, so that no test meets a service that is still starting."""
+    for _ in kernels.warm():
+        pass
 
 
 @pytest.fixture

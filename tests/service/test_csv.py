@@ -68,7 +68,7 @@ def test_times_may_be_iso_text_or_epoch_numbers() -> None:
     iso = read("time,value\n2024-05-01T14:00+02:00,1\n,2\n")
     assert iso.form == TimeForm("iso")
     assert np.isnan(iso.time).tolist() == [False, True]
-    epoch = read("time,value\n1714564800000000001,1\n", time_unit="ns")
+    epoch = read("time,value\n1714564800000000001,1\nNA,2\n", time_unit="ns")
     assert int(epoch.time.astype("datetime64[ns]").astype(np.int64)[0]) == 1714564800000000001
 
 

@@ -72,6 +72,12 @@ JSON_BODIES = {
     "too few weights": Wrong(extra('"weight":[1]'), VALUE, "weight"),
     "prediction in another form": Wrong(extra('"predict":["2024-01-01"]'), VALUE, "predict"),
     "prediction at no time": Wrong(extra('"predict":[5,null]'), VALUE, "predict", 1),
+    "a value beyond 1e60": Wrong(columns(b"[1,2,-1e61]"), VALUE, "value", 2),
+    "a time beyond 1e30": Wrong(columns(b"[1,2,3]", b"[0,1e300,2]"), VALUE, "time", 1),
+    "integers further apart than 64 bits": Wrong(
+        columns(b"[1,2]", b"[-9223372036854775808,9223372036854775807]"), VALUE, "time"
+    ),
+    "a time of 5e-324": Wrong(columns(b"[1,2]", b"[0,5e-324]"), VALUE, "time", 1),
     "an unknown key": Wrong(extra('"metod":"auto"'), UNKNOWN, "metod"),
     "an unknown option": Wrong(extra('"options":{"confidance":0.9}'), UNKNOWN, "options.confidance"),
     "a repeated key": Wrong(columns(b"[1,2,3]", rest=b',"value":[1,2,3]'), VALUE, "value"),
@@ -103,7 +109,7 @@ JSON_BODIES = {
         json.dumps({"time": list(range(5_001)), "value": [0] * 5_001}).encode(), ProblemType.too_many_points
     ),
     "too large a body": Wrong(b" " * 200_001, ProblemType.body_too_large),
-    "data without a trend": Wrong(columns(b"[1,2,3]", b"[5,5,5]"), ProblemType.no_fit, "value"),
+    "data without a trend": Wrong(columns(b"[1,2,3]", b"[5,5,5]"), ProblemType.no_fit, "time"),
     "nothing but missing values": Wrong(columns(b"[null,null,null]"), ProblemType.no_fit, "value"),
 }
 CSV_BODIES = {
@@ -247,7 +253,12 @@ def test_a_fault_of_the_service_is_a_problem_that_tells_nothing(
 
 
 NUMBERS = st.one_of(
-    st.none(), st.integers(-(2**63), 2**63 - 1), st.floats(allow_nan=False, allow_infinity=False)
+    st.none(),
+    st.integers(-(2**63), 2**63 - 1),
+    st.floats(-1e30, 1e30),
+    st.floats(-1e60, 1e60),
+    st.integers(0, 5),
+    st.floats(allow_nan=False, allow_infinity=False),
 )
 
 

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from service.codecs.columns import Columns, TimeForm
 from service.codecs.json import read_json
+from service.codecs.limits import check_columns
 from service.errors import Problem
 from service.schemas.options import FitArguments, TrendQuery
 from tests.service.series import attempt
@@ -70,6 +71,12 @@ def test_missing_times_are_taken_in_every_form() -> None:
         assert rendered[1] is None or np.isnan(rendered[1])
 
 
+def test_epoch_nanoseconds_stay_exact_beside_missing_times() -> None:
+    times = [1_714_564_800_000_000_001, None, 1_714_564_800_000_000_003]
+    columns, _ = read(time=times, value=[0.0] * 3, time_unit="ns")
+    assert list(columns.form.render(columns.time)) == times
+
+
 def test_weights_and_prediction_times_are_read() -> None:
     columns, _ = read(time=[0, 1], value=[0.0, 1.0], weight=[1, 2.5], predict=[2, 3])
     assert columns.weight is not None
@@ -96,7 +103,7 @@ def test_a_field_of_another_shape_is_a_problem_of_that_field(field: str, value: 
     fields = json.loads(body)
     fields.pop(field, None)
     text = json.dumps(fields).encode()[:-1] + b',"' + field.encode() + b'":' + value + b"}"
-    outcome = attempt(lambda: read_json(text, TrendQuery())[0].check(100))
+    outcome = attempt(lambda: check_columns(read_json(text, TrendQuery())[0], 100))
     if isinstance(outcome, Problem):
         assert outcome.kind.status in (400, 422)
     else:

@@ -1,17 +1,21 @@
 from __future__ import annotations
 
 import re
+import threading
 import time
+from collections.abc import Iterator
 from html.parser import HTMLParser
 
 import pytest
 from fastapi.testclient import TestClient
 
 import estimators
+from estimators import kernels
 from service.api import docs
 from service.compute import Warmth
 from service.errors import ProblemType
 from tests.service.conftest import MakeClient
+from tests.service.series import body
 
 
 def test_the_process_is_alive(client: TestClient) -> None:
@@ -32,6 +36,47 @@ def test_the_service_is_not_ready_before(make_client: MakeClient, monkeypatch: p
     response = make_client().get("/readyz")
     assert response.status_code == 503
     assert response.json()["type"] == ProblemType.not_ready.uri
+
+
+def test_a_fit_that_comes_too_early_is_told_to_come_back(
+    make_client: MakeClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Warmth, "start", lambda _: None)
+    response = make_client(queue_seconds=0.01).post("/v1/trends", json=body())
+    assert response.status_code == 503
+    assert response.json()["type"] == ProblemType.not_ready.uri
+    assert response.headers["retry-after"] == "1"
+
+
+def test_a_fit_that_comes_a_moment_too_early_waits(
+    make_client: MakeClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    go_on = threading.Event()
+
+    def slow_warm() -> Iterator[tuple[int, int, str]]:
+        go_on.wait(30)
+        yield 1, 1, "slow"
+
+    monkeypatch.setattr(kernels, "warm", slow_warm)
+    client = make_client(queue_seconds=30)
+    assert client.get("/readyz").status_code == 503
+    threading.Timer(0.1, go_on.set).start()
+    assert client.post("/v1/trends", json=body()).status_code == 200
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_a_service_that_could_not_warm_says_so(
+    make_client: MakeClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken_warm() -> Iterator[tuple[int, int, str]]:
+        raise OSError("no compiler")
+
+    monkeypatch.setattr(kernels, "warm", broken_warm)
+    client = make_client()
+    give_up = time.monotonic() + 30
+    while "could not" not in client.get("/readyz").json()["detail"]:
+        assert time.monotonic() < give_up
+    assert client.post("/v1/trends", json=body()).status_code == 503
 
 
 @pytest.mark.parametrize("kind", ["methods", "models"])

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from estimators.arrays import Reason
-from estimators.time_axis import TimeAxis
 from estimators.inference.intervals import student_quantile
 from estimators.result import Consensus, Estimate, Ledger, Notice, Points, Uncertainty
 from estimators.time_axis import TimeAxis
@@ -86,8 +85,8 @@ def made_trend(
             center=center,
             level=level + slope * center,
             slope=slope,
-            level_variance=np.nan if level_error is None else level_error**2,
-            slope_variance=np.nan if slope_error is None else slope_error**2,
+            level_stderr=np.nan if level_error is None else level_error,
+            slope_stderr=np.nan if slope_error is None else slope_error,
             sigma=sigma,
             span=(0.0, float(internal[used].max())),
         ),

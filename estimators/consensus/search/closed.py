@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -21,7 +21,12 @@ from estimators.options import RobustOptions
 from estimators.regression.huber import HUBER, huber
 from estimators.regression.least_squares import least_squares
 from estimators.regression.loss import Loss, LossKind
-from estimators.regression.repeated_median import MAX_POINTS, TooManySlopesError, repeated_median
+from estimators.regression.repeated_median import (
+    MAX_POINTS,
+    TooManySlopesError,
+    repeated_median,
+    repeated_median_uncertainty,
+)
 from estimators.regression.theil_sen import MedianLine, theil_sen
 from estimators.result import Ledger, NoFit, NoFitReason, Points, SearchKind
 
@@ -90,13 +95,17 @@ class RepeatedMedian:
         """Fit; sigma is the MAD of the residuals, corrected for few points, unless given."""
         del seed
         try:
-            return _median_line(data, scale, options, repeated_median, "siegel", Loss(LossKind.sign))
+            found = _median_line(data, scale, options, repeated_median, "siegel", Loss(LossKind.sign))
         except TooManySlopesError as error:
             advice = (
                 f"The repeated median would take minutes ({error}). It takes at most {MAX_POINTS} points: "
                 "aggregate the series, or use theil-sen or auto."
             )
             return no_fit(NoFitReason.too_large, advice, data)
+        if isinstance(found, NoFit):
+            return found
+        # No simple influence function: groups of points tell the variance.
+        return replace(found, spread=repeated_median_uncertainty(data.columns[1], data.y))
 
 
 def _median_line(

@@ -10,9 +10,11 @@ from estimators.arrays import FloatArray, InputError
 from estimators.consensus.found import Found, LinearData, OtherStructure, Scale
 from estimators.consensus.search.closed import OrdinaryLeastSquares
 from estimators.consensus.stopping import clean_probability
-from estimators.consensus.structure import kernel as slots
+from estimators.consensus.structure import record as slots
 from estimators.consensus.structure.finish import TABLE
+from estimators.consensus.structure.kernel import fit_structures
 from estimators.options import RobustOptions
+from estimators.regression.influence import INLIERS, SUMS
 from estimators.regression.loss import Loss, LossKind
 from estimators.result import Ledger, NoFit
 
@@ -59,46 +61,49 @@ class StructureSearch:
         inlier = np.empty(n, dtype=np.bool_)
         probability = np.empty(n)
         residual = np.empty(n)
+        sums = np.empty((1, SUMS))
         records = np.empty((1, slots.RECORD))
-        slots.fit_structures(
+        fit_structures(
             np.array([0, n]), data.t, data.y, root, np.array([scale.floor]), scale.sigma or 0.0,
-            scale.threshold or 0.0, options.threshold_sigmas, weight, inlier, probability, residual, records,
+            scale.threshold or 0.0, options.threshold_sigmas, weight, inlier, probability, residual, sums,
+            records,
         )  # fmt: skip
         record = records[0]
         if not record[slots.FOUND]:
             return OrdinaryLeastSquares().run(data, scale, options, seed)
-        inliers = int(record[slots.REC_INLIERS])
-        drawn = int(record[slots.REC_PAIRS])
-        sigma = float(record[slots.REC_SIGMA])
+        inliers = int(sums[0, INLIERS])
+        drawn = int(record[slots.PROPOSED])
+        sigma = float(record[slots.SIGMA])
         clean = clean_probability(inliers, n, data.p)
         return Found(
-            theta=np.array([record[slots.REC_LEVEL], record[slots.REC_SLOPE]]),
+            theta=np.array([record[slots.LEVEL], record[slots.SLOPE]]),
             residual=residual,
             inlier=inlier,
             probability=probability,
             sigma=sigma,
             sigma_source=scale.sigma_source if scale.sigma is not None else "mixture",
-            threshold=float(record[slots.REC_THRESHOLD]),
+            threshold=float(record[slots.THRESHOLD]),
             threshold_source="sigma" if scale.threshold is None else scale.threshold_source,
             loss=Loss(LossKind.tabulated, table=weight[0]),
             ledger=Ledger(
                 drawn=drawn,
-                scored=int(record[slots.REC_CANDIDATES]),
-                point_evaluations=int(record[slots.REC_EVALUATIONS]),
+                scored=int(record[slots.WEIGHED]),
+                point_evaluations=int(record[slots.EVALUATIONS]),
                 optimizations=1,
             ),
             sampling_probability=float(-np.expm1(drawn * np.log1p(-min(clean, 1.0 - 1e-16)))),
             search="sampled",
             runner_up=_runner_up(record),
+            sums=sums[0],
         )
 
 
 def _runner_up(record: FloatArray) -> OtherStructure | None:
-    if not record[slots.REC_RUNNER]:
+    if not record[slots.RUNNER]:
         return None
     return OtherStructure(
-        theta=np.array([record[slots.REC_RUNNER_LEVEL], record[slots.REC_RUNNER_SLOPE]]),
-        sigma=float(record[slots.REC_RUNNER_SIGMA]),
-        inliers=int(record[slots.REC_RUNNER_INLIERS]),
-        margin=float(record[slots.REC_RUNNER_MARGIN]),
+        theta=np.array([record[slots.RUNNER_LEVEL], record[slots.RUNNER_SLOPE]]),
+        sigma=float(record[slots.RUNNER_SIGMA]),
+        inliers=int(record[slots.RUNNER_INLIERS]),
+        margin=float(record[slots.RUNNER_MARGIN]),
     )

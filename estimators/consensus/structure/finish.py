@@ -13,6 +13,7 @@ import math
 
 import numpy as np
 
+from estimators.arrays import BoolArray, FloatArray, IntArray
 from estimators.consensus.structure.mixture import (
     ABOVE,
     ABOVE_MEAN,
@@ -27,25 +28,31 @@ from estimators.consensus.structure.mixture import (
 from estimators.kernels import device
 from estimators.regression.loss import CELLS_PER_SIGMA
 
-REACH = 8
+REACH = 7
 TABLE = CELLS_PER_SIGMA * REACH
 """Cells of the weight tables: residuals from 0 to REACH scales; none beyond follows the line."""
+
+LONG = 65536
+"""Points beyond which sums that only need to be accurate to a per cent are taken from a part of the series."""
+STRIDED = 16384
+"""Points of that part."""
 
 _ROOT_2PI = 2.5066282746310002
 
 
 @device
-def fill_tables(params, n, spread, weight, follow_above, follow_below):
-    """Tabulate the posterior for residuals above and below the line, and their minimum ``weight``.
+def fill_tables(params: FloatArray, n: int, weight: FloatArray, follow: FloatArray) -> None:
+    """Tabulate the posterior ``follow``, shape (2 TABLE + 1,), and ``weight``, shape (TABLE + 1,).
 
-    All have TABLE + 1 entries, at |r| = k / CELLS_PER_SIGMA scales.
+    ``follow`` runs from -REACH to REACH scales; ``weight`` is the smaller of the posteriors above and below
+    the line, at |r| = k / CELLS_PER_SIGMA scales.
     """
     s = params[SIGMA]
     share = min(params[INLIERS] / n, 1.0 - 0.5 / n)
     outliers = 1.0 - share
     # Excursions have a level of their own; seen without the time axis they are spread over the range.
     held = min(1.0, params[HELD_COUNT] / max(n - params[INLIERS], 0.5))
-    uniform = (held + (1.0 - held) * params[UNIFORM]) / spread
+    uniform = held + (1.0 - held) * params[UNIFORM]
     above = (1.0 - held) * params[ABOVE]
     below = (1.0 - held) * params[BELOW]
     apart = SEPARATION * s
@@ -62,18 +69,28 @@ def fill_tables(params, n, spread, weight, follow_above, follow_below):
         f_below = uniform
         if below > 0.0:
             f_below += below * (apart + down) / (down * down) * math.exp(-r / down) * gap
-        follow_above[k] = f_in / (f_in + outliers * f_above)
-        follow_below[k] = f_in / (f_in + outliers * f_below)
-        weight[k] = min(follow_above[k], follow_below[k])
-    # Continuous at the end of the table.
-    weight[TABLE] = 0.0
-    follow_above[TABLE] = 0.0
-    follow_below[TABLE] = 0.0
+        # 0 at the ends, so that clamping beyond them is continuous.
+        inside = 0.0 if k == TABLE else 1.0
+        follow[TABLE + k] = inside * f_in / (f_in + outliers * f_above)
+        follow[TABLE - k] = inside * f_in / (f_in + outliers * f_below)
+        weight[k] = min(follow[TABLE + k], follow[TABLE - k])
+    weight[0] = follow[TABLE] = min(weight[0], follow[TABLE])
 
 
 @device
-def newton_sums(t, y, root_weight, weighted, level, slope, s, weight, stride, sums):
-    """Gradient, Hessian and weighted normal matrix of sum rho(r_i / s) at a line, over every stride-th point."""
+def newton_sums(
+    t: FloatArray,
+    y: FloatArray,
+    root_weight: FloatArray,
+    weighted: bool,
+    level: float,
+    slope: float,
+    s: float,
+    weight: FloatArray,
+    stride: int,
+    sums: FloatArray,
+) -> None:
+    """Sum gradient (2), Hessian (3) and weighted normal matrix (3) of rho(r / s) over strided points."""
     g0 = 0.0
     g1 = 0.0
     h0 = 0.0
@@ -89,22 +106,22 @@ def newton_sums(t, y, root_weight, weighted, level, slope, s, weight, stride, su
         if weighted:
             root = root_weight[i]
         u = (y[i] - level - slope * ti) * (root * inverse)
-        x = abs(u) * CELLS_PER_SIGMA
-        if x < TABLE:
-            k = int(x)
-            rise = weight[k + 1] - weight[k]
-            w = weight[k] + (x - k) * rise
-            psi = u * w * root
-            bend = (w + x * rise) * root * root
-            w *= root * root
-            g0 += psi
-            g1 += psi * ti
-            h0 += bend
-            h1 += bend * ti
-            h2 += bend * ti * ti
-            w0 += w
-            w1 += w * ti
-            w2 += w * ti * ti
+        # Clamping instead of branching keeps random outliers cheap; the weight is 0 at the end.
+        x = min(abs(u) * CELLS_PER_SIGMA, TABLE - 1e-6)
+        k = int(x)
+        rise = weight[k + 1] - weight[k]
+        w = weight[k] + (x - k) * rise
+        psi = u * w * root
+        bend = (w + x * rise) * root * root
+        w *= root * root
+        g0 += psi
+        g1 += psi * ti
+        h0 += bend
+        h1 += bend * ti
+        h2 += bend * ti * ti
+        w0 += w
+        w1 += w * ti
+        w2 += w * ti * ti
     sums[0] = g0
     sums[1] = g1
     sums[2] = h0
@@ -116,7 +133,7 @@ def newton_sums(t, y, root_weight, weighted, level, slope, s, weight, stride, su
 
 
 @device
-def newton_step(sums, s, step):
+def newton_step(sums: FloatArray, s: float, step: FloatArray) -> bool:
     """Solve for the change of (level, slope); returns whether the normal matrix was regular.
 
     Where the Hessian is not well positive the weighted normal matrix takes its place: a step of
@@ -140,67 +157,128 @@ def newton_step(sums, s, step):
 
 
 @device
-def solve_line(t, y, root_weight, weighted, level, slope, s, weight, line):
-    """Newton's method, first on a stride and then on all points; fills ``line`` with (level, slope)."""
+def solve_line(
+    t: FloatArray,
+    y: FloatArray,
+    root_weight: FloatArray,
+    weighted: bool,
+    level: float,
+    slope: float,
+    s: float,
+    weight: FloatArray,
+    line: FloatArray,
+    sums: FloatArray,
+) -> None:
+    """Newton's method; fills ``line`` with (level, slope) and ``sums`` with the curvature of all points.
+
+    A long series is solved on a stride first, which comes within a hundredth of a scale. One step on all
+    points with the stride's curvature, true to a hundredth itself, then leaves an error of 1e-4 scales.
+    """
     n = t.size
-    sums = np.empty(8)
     step = np.empty(2)
-    tolerance = 1e-13 * s
-    stride = n // 16384
-    if stride > 1:
-        for _ in range(6):
-            newton_sums(t, y, root_weight, weighted, level, slope, s, weight, stride, sums)
-            if not newton_step(sums, s, step):
-                break
-            level += step[0]
-            slope += step[1]
-            if abs(step[0]) + abs(step[1]) < 1e-4 * s:
-                break
-    # On many points the stride is already within a hundredth of a scale: one full step finishes it.
-    rounds = 30 if n <= 65536 else 1
-    for _ in range(rounds):
-        newton_sums(t, y, root_weight, weighted, level, slope, s, weight, 1, sums)
+    stride = n // STRIDED if n > LONG else 1
+    tolerance = 1e-13 * s if stride == 1 else 1e-5 * s
+    for _ in range(30):
+        newton_sums(t, y, root_weight, weighted, level, slope, s, weight, stride, sums)
         if not newton_step(sums, s, step):
             break
         level += step[0]
         slope += step[1]
         if abs(step[0]) + abs(step[1]) < tolerance:
             break
+    if stride > 1:
+        share = ((n + stride - 1) // stride) / n
+        for k in range(2, 8):
+            sums[k] /= share
+        _gradient(t, y, root_weight, weighted, level, slope, s, weight, sums)
+        if newton_step(sums, s, step):
+            level += step[0]
+            slope += step[1]
     line[0] = level
     line[1] = slope
 
 
 @device
+def _gradient(
+    t: FloatArray,
+    y: FloatArray,
+    root_weight: FloatArray,
+    weighted: bool,
+    level: float,
+    slope: float,
+    s: float,
+    weight: FloatArray,
+    sums: FloatArray,
+) -> None:
+    """Gradient of sum rho(r / s) on all points, into the first two of ``sums``."""
+    g0 = 0.0
+    g1 = 0.0
+    inverse = 1.0 / s
+    root = 1.0
+    for i in range(t.size):
+        if weighted:
+            root = root_weight[i]
+        u = (y[i] - level - slope * t[i]) * (root * inverse)
+        x = min(abs(u) * CELLS_PER_SIGMA, TABLE - 1e-6)
+        k = int(x)
+        psi = u * (weight[k] + (x - k) * (weight[k + 1] - weight[k])) * root
+        g0 += psi
+        g1 += psi * t[i]
+    sums[0] = g0
+    sums[1] = g1
+
+
+@device
+def mean_square(
+    t: FloatArray,
+    y: FloatArray,
+    root_weight: FloatArray,
+    weighted: bool,
+    level: float,
+    slope: float,
+    s: float,
+    weight: FloatArray,
+    rows: IntArray,
+) -> float:
+    """Weighted mean of squared whitened residuals over some rows; proportional to the variance of inliers."""
+    total = 0.0
+    square = 0.0
+    root = 1.0
+    for i in rows:
+        if weighted:
+            root = root_weight[i]
+        r = (y[i] - level - slope * t[i]) * root
+        w = weight[int(min(abs(r) / s * CELLS_PER_SIGMA, TABLE - 1e-6))]
+        total += w
+        square += w * r * r
+    return square / total if total > 0.0 else 0.0
+
+
+@device
 def label_points(
-    t, y, root_weight, weighted, level, slope, s, threshold, above, below, inlier, probability, residual, sums
-):
-    """Residuals, posteriors and labels of all points; ``sums``: posterior weight and its square sum, inliers."""
-    z0 = 0.0
-    z2 = 0.0
-    inliers = 0
+    t: FloatArray,
+    y: FloatArray,
+    root_weight: FloatArray,
+    weighted: bool,
+    level: float,
+    slope: float,
+    s: float,
+    threshold: float,
+    follow: FloatArray,
+    inlier: BoolArray,
+    probability: FloatArray,
+    residual: FloatArray,
+) -> None:
+    """Fill residuals, posteriors and labels of all points."""
     inverse = CELLS_PER_SIGMA / s
     root = 1.0
     for i in range(t.size):
         r = y[i] - level - slope * t[i]
         if weighted:
             root = root_weight[i]
-        x = r * root * inverse
-        p = 0.0
-        if x >= 0.0:
-            if x < TABLE:
-                k = int(x)
-                p = above[k] + (x - k) * (above[k + 1] - above[k])
-        elif x > -TABLE:
-            k = int(-x)
-            p = below[k] + (-x - k) * (below[k + 1] - below[k])
         whitened = r * root
-        z0 += p
-        z2 += p * whitened * whitened
-        inside = abs(whitened) <= threshold
-        inliers += inside
-        inlier[i] = inside
-        probability[i] = p
+        x = min(max(whitened * inverse, -TABLE + 1e-6), TABLE - 1e-6) + TABLE
+        k = int(x)
+        probability[i] = follow[k] + (x - k) * (follow[k + 1] - follow[k])
+        inlier[i] = abs(whitened) <= threshold
         residual[i] = r
-    sums[0] = z0
-    sums[1] = z2
-    sums[2] = inliers

@@ -16,6 +16,7 @@ import math
 
 import numpy as np
 
+from estimators.arrays import FloatArray, IntArray
 from estimators.kernels import device
 
 MIN_GAP = 0.3
@@ -29,7 +30,7 @@ _R2_SECOND = 0.5698402909980532
 
 
 @device
-def first_eligible(t, gap, first):
+def first_eligible(t: FloatArray, gap: float, first: IntArray) -> int:
     """Index of the first point at least ``gap`` after each point; returns the number of eligible pairs."""
     n = t.size
     pairs = 0
@@ -44,7 +45,7 @@ def first_eligible(t, gap, first):
 
 
 @device
-def propose_lines(t, y, count, level, slope):
+def propose_lines(t: FloatArray, y: FloatArray, count: int, level: FloatArray, slope: FloatArray) -> int:
     """Fill ``level`` and ``slope`` (at t = 0) with the lines of at most ``count`` pairs; returns how many."""
     n = t.size
     first = np.empty(n, np.int64)
@@ -78,7 +79,7 @@ def propose_lines(t, y, count, level, slope):
         v += _R2_SECOND
         v -= math.floor(v)
         target = int(u * total)
-        i = np.searchsorted(cumulative, target, side="right") - 1
+        i = int(np.searchsorted(cumulative, target, side="right")) - 1
         while first[i] >= n:
             i -= 1
         j = first[i] + int(v * (n - first[i]))
@@ -90,7 +91,15 @@ def propose_lines(t, y, count, level, slope):
 
 
 @device
-def scale_evidence(t, y, level, slope, count, gain, contrast):
+def scale_evidence(
+    t: FloatArray,
+    y: FloatArray,
+    level: FloatArray,
+    slope: FloatArray,
+    count: int,
+    gain: FloatArray,
+    contrast: FloatArray,
+) -> None:
     """Fill ``gain[o, h]`` and ``contrast[o, h]``: evidence for line h at scale 2**-o of a unit range.
 
     ``gain`` compares the count within the scale with a background that is uniform over the range,

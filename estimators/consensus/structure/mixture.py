@@ -13,6 +13,9 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
+from estimators.arrays import FloatArray
 from estimators.kernels import device
 
 # Slots of a candidate's parameter vector.
@@ -32,51 +35,69 @@ LIKELIHOOD = 12  # log-likelihood at the parameters before the last step
 INLIERS = 13  # effective number of readings that follow the line
 TIME_SPREAD = 14  # their sum of squared time deviations
 HELD_COUNT = 15  # effective number of readings that keep the level of an excursion
-SIZE = 16
+CORRELATION = 16  # of successive residuals of readings that follow the line
+SIZE = 17
 
 _ROOT_2PI = 2.5066282746310002
 _STUDENT5 = 0.3796066898224944  # density of Student's t with 5 degrees of freedom at 0
 LEVEL_GAIN = 0.03
 TAU_FLOOR = 0.5
 SIDE_FLOOR = 3.0
-SEPARATION = 6.0
+SEPARATION = 8.0
+CORRELATION_FLOOR = 2.0
+
+
+_DECAY_CELLS = 16
+_DECAY_REACH = 44
+_DECAY = np.exp(-np.arange(_DECAY_CELLS * _DECAY_REACH + 1) / _DECAY_CELLS)
 
 
 @device
-def start(t, y, root_weight, level, slope, scale, sigma_floor, fixed, params):
-    """Initial parameters of a candidate, from labels cut at ``scale``: one pass without transcendentals."""
+def decay(z: float) -> float:
+    """exp(-z) for z >= 0, to a relative 1e-6 and at least 1e-19: enough to weigh structures, and fast."""
+    x = min(z, _DECAY_REACH - 1e-9) * _DECAY_CELLS
+    k = int(x)
+    f = (x - k) * (1.0 / _DECAY_CELLS)
+    return float(_DECAY[k]) * (1.0 - f * (1.0 - f * (0.5 - f * (1.0 / 6.0))))
+
+
+@device
+def start(
+    t: FloatArray,
+    y: FloatArray,
+    root_weight: FloatArray,
+    level: float,
+    slope: float,
+    scale: float,
+    sigma_floor: float,
+    fixed: float,
+    params: FloatArray,
+) -> None:
+    """Set the parameters of a candidate from labels cut at ``scale``: one pass without transcendentals."""
     n = t.size
-    inside = 0
+    inside = 0.0
     square = 0.0
-    entered = 1.0
-    stayed = 1.0
-    from_in = 2.0
-    from_out = 2.0
-    held = 1.0
-    could_hold = 2.0
-    was_out = False
+    outside_twice = 0.0
+    held = 0.0
+    was_out = 0.0
     last = 0.0
+    # Flags are numbers here: branches that follow random outliers cost more than the arithmetic.
     for i in range(n):
         r = (y[i] - level - slope * t[i]) * root_weight[i]
-        out = abs(r) > scale
-        if not out:
-            inside += 1
-            square += r * r
-        if i > 0:
-            if was_out:
-                from_out += 1.0
-                if out:
-                    stayed += 1.0
-                    could_hold += 1.0
-                    if abs(r - last) <= 2.0 * scale:
-                        held += 1.0
-            else:
-                from_in += 1.0
-                if out:
-                    entered += 1.0
+        out = 1.0 if abs(r) > scale else 0.0
+        square += (1.0 - out) * r * r
+        inside += 1.0 - out
+        both = out * was_out
+        outside_twice += both
+        held += both if abs(r - last) <= 2.0 * scale else 0.0
         was_out = out
         last = r
-    sigma = fixed if fixed > 0.0 else max(sigma_floor, math.sqrt(square / max(1, inside - 2)))
+    outside = n - inside
+    first_out = 1.0 if abs(y[0] - level - slope * t[0]) * root_weight[0] > scale else 0.0
+    # Of n - 1 pairs of neighbours: how often an outlier was entered and how often it went on.
+    from_out = outside - was_out
+    entered = outside - first_out - outside_twice
+    sigma = fixed if fixed > 0.0 else max(sigma_floor, math.sqrt(square / max(1.0, inside - 2.0)))
     params[LEVEL] = level
     params[SLOPE] = slope
     params[SIGMA] = sigma
@@ -85,14 +106,14 @@ def start(t, y, root_weight, level, slope, scale, sigma_floor, fixed, params):
     params[BELOW] = 0.2
     params[ABOVE_MEAN] = 10.0 * sigma
     params[BELOW_MEAN] = 10.0 * sigma
-    params[HELD] = held / could_hold
+    params[HELD] = (1.0 + held) / (2.0 + outside_twice)
     params[HELD_SCALE] = 1.5 * sigma
-    params[ENTER] = entered / from_in
-    params[STAY] = stayed / from_out
+    params[ENTER] = (1.0 + entered) / (2.0 + n - 1.0 - from_out)
+    params[STAY] = (1.0 + outside_twice) / (2.0 + from_out)
 
 
 @device
-def side_scale(mean, s):
+def side_scale(mean: float, s: float) -> float:
     """Scale of one-sided errors with a given mean: the root of mean = theta + c theta / (c + theta)."""
     c = SEPARATION * s
     half = 0.5 * (mean - 2.0 * c)
@@ -100,11 +121,20 @@ def side_scale(mean, s):
 
 
 @device
-def em_step(t, y, root_weight, spread, sides, sigma_floor, fixed, params):
+def em_step(
+    t: FloatArray,
+    y: FloatArray,
+    root_weight: FloatArray,
+    sides: int,
+    sigma_floor: float,
+    fixed: float,
+    correlate: bool,
+    params: FloatArray,
+) -> None:
     """One forward filter over the series and one update of all parameters, in place.
 
-    ``sides``: 0 none, 1 above only, -1 below only, 2 both. ``spread`` is the range of the values;
-    ``fixed`` a given noise scale, or 0.
+    ``sides``: 0 none, 1 above only, -1 below only, 2 both. ``fixed``: a given noise scale, or 0.
+    ``correlate``: whether to estimate the correlation of neighbours.
     """
     n = t.size
     a = params[LEVEL]
@@ -114,7 +144,7 @@ def em_step(t, y, root_weight, spread, sides, sigma_floor, fixed, params):
     tau = params[HELD_SCALE]
     enter = params[ENTER]
     stay = params[STAY]
-    uniform = params[UNIFORM] / spread
+    uniform = params[UNIFORM]  # over the unit range of the values
     above = params[ABOVE]
     below = params[BELOW]
     theta_up = params[ABOVE_MEAN]
@@ -123,6 +153,12 @@ def em_step(t, y, root_weight, spread, sides, sigma_floor, fixed, params):
     apart = SEPARATION * s
     above_height = above * (apart + theta_up) / (theta_up * theta_up)
     below_height = below * (apart + theta_down) / (theta_down * theta_down)
+    above_rate = 1.0 / theta_up
+    below_rate = 1.0 / theta_down
+    inverse_apart = 1.0 / apart
+    inverse_s = 1.0 / s
+    inverse_tau = 1.0 / tau
+    held_height = _STUDENT5 / tau
     log_likelihood = 0.0
     product = 1.0
     # Sufficient statistics of the M-step.
@@ -135,16 +171,22 @@ def em_step(t, y, root_weight, spread, sides, sigma_floor, fixed, params):
     inliers = 0.0
     q_uniform = 0.0
     q_above = 0.0
-    q_below = 0.0
+    q_side = 0.0
     r_above = 0.0
-    r_below = 0.0
+    r_side = 0.0
     q_held = 0.0
     q_fresh = 0.0
     r_held = 0.0
-    from_in = 1e-9
     in_to_out = 0.0
     from_out = 1e-9
     out_to_out = 0.0
+    rho = params[CORRELATION]
+    lagged = 0.0
+    lag_square = 0.0
+    expected = 0.0  # of the residual, given the last one that followed the line
+    known = 0.0  # share of its variance that is known
+    last_at = -2
+    last_inlier = 0.0
     previous = enter / (1.0 - stay + enter)  # stationary share of contaminated readings
     level = 0.0
     age = 0.0
@@ -152,44 +194,47 @@ def em_step(t, y, root_weight, spread, sides, sigma_floor, fixed, params):
         root = root_weight[i]
         raw = y[i] - a - b * t[i]
         r = raw * root
-        u = r / s
-        f_in = narrow * math.exp(-0.5 * u * u) if abs(u) < 38.0 else 0.0
-        g_uniform = uniform
-        g_above = 0.0
-        g_below = 0.0
-        if r > 0.0:
-            if above > 0.0:
-                g_above = above_height * math.exp(-r / theta_up) * (1.0 - math.exp(-r / apart))
-        elif below > 0.0:
-            g_below = below_height * math.exp(r / theta_down) * (1.0 - math.exp(r / apart))
-        g_side = g_above + g_below
-        f_free = g_uniform + g_side
+        if rho > 0.0:
+            expected *= rho
+            known *= rho * rho
+            left = 1.0 / math.sqrt(1.0 - known)
+            u = (r - expected) * inverse_s * left
+            f_in = narrow * left * decay(0.5 * u * u)
+        else:
+            u = r * inverse_s
+            f_in = narrow * decay(0.5 * u * u)
+        # One-sided errors above or below, whichever side the reading is on.
+        is_above = 1.0 if r > 0.0 else 0.0
+        distance = abs(r)
+        height = below_height + is_above * (above_height - below_height)
+        rate = below_rate + is_above * (above_rate - below_rate)
+        g_side = height * decay(distance * rate) * (1.0 - decay(distance * inverse_apart))
+        f_free = uniform + g_side
         f_held = 0.0
         tail = 0.0
         if age > 0.0:
-            away = (r - level) / tau
+            away = (r - level) * inverse_tau
             tail = 1.0 / (1.0 + 0.2 * away * away)
-            f_held = _STUDENT5 / tau * tail * tail * tail
+            f_held = held_height * tail * tail * tail
             f_out = (1.0 - held_share) * f_free + held_share * f_held
         else:
             f_out = f_free
         p_out = previous * stay + (1.0 - previous) * enter
-        joint_in = (1.0 - p_out) * f_in
         joint_out = p_out * f_out
-        total = joint_in + joint_out
-        total = max(total, 1e-290)
+        # Positive, since neither density falls to 0.
+        total = (1.0 - p_out) * f_in + joint_out
         product *= total
         if product < 1e-200 or product > 1e200:
             log_likelihood += math.log(product)
             product = 1.0
-        out = joint_out / total
+        inverse = 1.0 / total
+        out = joint_out * inverse
         z = 1.0 - out
         # Transitions: posterior of the pair, by the filter.
-        pair = previous * stay * f_out / total
+        per_state = f_out * inverse
         from_out += previous
-        out_to_out += pair
-        from_in += 1.0 - previous
-        in_to_out += (1.0 - previous) * enter * f_out / total
+        out_to_out += previous * stay * per_state
+        in_to_out += (1.0 - previous) * enter * per_state
         # The line.
         w = z * root * root
         w0 += w
@@ -199,21 +244,22 @@ def em_step(t, y, root_weight, spread, sides, sigma_floor, fixed, params):
         wty += w * t[i] * y[i]
         wyy += w * raw * raw
         inliers += z
-        # The background.
-        if f_out > 0.0:
-            free = out
-            if age > 0.0:
-                held = out * held_share * f_held / f_out
-                free = out - held
-                q_held += held
-                q_fresh += free
-                r_held += held * 1.2 * tail * (r - level) * (r - level)
-            if f_free > 0.0:
-                q_uniform += free * g_uniform / f_free
-                q_above += free * g_above / f_free
-                q_below += free * g_below / f_free
-                r_above += free * g_above / f_free * r
-                r_below -= free * g_below / f_free * r
+        # The background: the share out / f_out goes to each of its parts.
+        part = p_out * inverse
+        free = part
+        if age > 0.0:
+            held = part * held_share * f_held
+            free = part * (1.0 - held_share)
+            q_held += held
+            q_fresh += out - held
+            r_held += held * 1.2 * tail * (r - level) * (r - level)
+        q_uniform += free * uniform
+        sided = free * g_side
+        q_side += sided
+        r_side += sided * distance
+        sided *= is_above
+        q_above += sided
+        r_above += sided * distance
         # The level of the present excursion, forgotten once the series is back on the line.
         if out > 0.5:
             if age > 0.0 and abs(r - level) < 6.0 * tau:
@@ -225,6 +271,13 @@ def em_step(t, y, root_weight, spread, sides, sigma_floor, fixed, params):
                 age = 1.0
         else:
             age = 0.0
+            if last_at == i - 1:
+                lagged += r * last_inlier
+                lag_square += 0.5 * (r * r + last_inlier * last_inlier)
+            last_at = i
+            last_inlier = r
+            expected = r
+            known = 1.0
         previous = out
     log_likelihood += math.log(product)
     params[LIKELIHOOD] = log_likelihood
@@ -247,8 +300,13 @@ def em_step(t, y, root_weight, spread, sides, sigma_floor, fixed, params):
         params[SLOPE] = slope
         if fixed <= 0.0:
             params[SIGMA] = max(sigma_floor, math.sqrt(max(0.0, residual) / inliers))
+    if correlate and lag_square > 0.0:
+        rho = lagged / lag_square
+        params[CORRELATION] = min(rho, 0.97) if rho > CORRELATION_FLOOR / math.sqrt(inliers) else 0.0
     s = params[SIGMA]
-    free_total = q_uniform + q_above + q_below + 1.0
+    q_below = q_side - q_above
+    r_below = r_side - r_above
+    free_total = q_uniform + q_side + 1.0
     if sides != 0:
         params[ABOVE] = 0.0 if sides == -1 else (q_above + 0.25) / free_total
         params[BELOW] = 0.0 if sides == 1 else (q_below + 0.25) / free_total
@@ -261,5 +319,5 @@ def em_step(t, y, root_weight, spread, sides, sigma_floor, fixed, params):
         params[BELOW] = 0.0
     params[HELD] = min(0.99, max(0.01, (q_held + 0.5) / (q_held + q_fresh + 1.0)))
     params[HELD_SCALE] = max(TAU_FLOOR * s, math.sqrt(r_held / max(q_held, 1e-9)))
-    params[ENTER] = min(0.98, max(0.002, (in_to_out + 0.5) / (from_in + 1.0)))
+    params[ENTER] = min(0.98, max(0.002, (in_to_out + 0.5) / (n - from_out + 1.0)))
     params[STAY] = min(0.995, max(0.02, (out_to_out + 0.5) / (from_out + 1.0)))

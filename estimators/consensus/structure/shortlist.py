@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from estimators.arrays import FloatArray, IntArray
 from estimators.consensus.structure.hypotheses import OCTAVES
 from estimators.kernels import device
 
@@ -12,7 +13,19 @@ SAME_LINE = 1.25
 
 
 @device
-def pick_lines(t, y, level, slope, count, evidence, per_octave, least, made, picks, pick_octave):
+def pick_lines(
+    t: FloatArray,
+    y: FloatArray,
+    level: FloatArray,
+    slope: FloatArray,
+    count: int,
+    evidence: FloatArray,
+    per_octave: int,
+    least: float,
+    made: int,
+    picks: IntArray,
+    pick_octave: IntArray,
+) -> int:
     """Append to ``picks`` and ``pick_octave``; returns their new length.
 
     A line stands for itself at the scales where its evidence peaks; at every scale the best lines are

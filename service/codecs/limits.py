@@ -1,0 +1,75 @@
+"""What the arrays of a request must hold, whatever format they came in: lengths, weights, magnitudes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from estimators.arrays import LARGEST_TIME, LARGEST_VALUE, SMALLEST_TIME
+from service.codecs.columns import Columns
+from service.errors import Problem, ProblemType, invalid_value
+
+
+def check_columns(columns: Columns, max_points: int) -> None:
+    """Check that columns belong together and can be computed with, and make them read-only.
+
+    Parameters
+    ----------
+    columns : Columns
+    max_points : int
+        Most rows, and most times to predict at.
+
+    Raises
+    ------
+    Problem
+        Naming the column and, where one is at fault, the row.
+    """
+    _check_lengths(columns, max_points)
+    if columns.weight is not None:
+        _refuse(~(columns.weight >= 0), "weight", "weights are precisions: numbers that are not negative")
+    if columns.predict is not None:
+        _refuse(np.isnan(columns.predict), "predict", "a time is missing")
+    too_large = f"is beyond ±{LARGEST_VALUE:g}, where squares overflow; choose a larger unit"
+    _refuse(np.abs(columns.value) > LARGEST_VALUE, "value", too_large)
+    if columns.form.kind == "number":
+        _check_plain_times(columns)
+    for column in (columns.time, columns.value, columns.weight, columns.predict):
+        if column is not None:
+            column.flags.writeable = False
+
+
+def _check_lengths(columns: Columns, max_points: int) -> None:
+    rows = columns.time.size
+    if rows == 0:
+        raise invalid_value("time", "is empty; send at least one row")
+    longest = max(rows, columns.value.size, 0 if columns.predict is None else columns.predict.size)
+    if longest > max_points:
+        message = f"{longest} rows; at most {max_points} are taken"
+        raise Problem(ProblemType.too_many_points, message, extra={"limit": max_points})
+    if columns.value.size != rows:
+        raise invalid_value("value", f"{columns.value.size} values for {rows} times; send one value per time")
+    if columns.weight is not None and columns.weight.size != rows:
+        raise invalid_value("weight", f"{columns.weight.size} weights for {rows} times; send one per time")
+
+
+def _check_plain_times(columns: Columns) -> None:
+    """Refuse numbers that are no times of anything, and integers further apart than 64 bits."""
+    ends = []
+    for field, column in (("time", columns.time), ("predict", columns.predict)):
+        if column is None or not column.size:
+            continue
+        if np.issubdtype(column.dtype, np.integer):
+            ends += [int(column.min()), int(column.max())]
+        else:
+            size = np.abs(column.astype(np.float64))
+            message = f"is neither 0 nor between {SMALLEST_TIME:g} and {LARGEST_TIME:g}; choose another unit"
+            _refuse((size > LARGEST_TIME) | ((size > 0) & (size < SMALLEST_TIME)), field, message)
+    if ends and max(ends) - min(ends) >= 2**63:
+        raise invalid_value("time", "times lie further apart than 64-bit integers can tell; use another unit")
+
+
+def _refuse(bad: npt.NDArray[Any], field: str, message: str) -> None:
+    if np.any(bad):
+        raise invalid_value(field, message, int(np.argmax(bad)))
