@@ -190,7 +190,8 @@ def _coverage(
     """Coverage of the cell that is farthest outside of (or nearest to the edge of) what is claimed."""
     # Where every draw failed there is no interval to speak of: that breaks any claim.
     rates = {key: float(np.nan_to_num(results[key].coverage())) for key in keys}
-    worst = min(rates, key=lambda key: min(rates[key] - low, high - rates[key]))
+    room = {key: rate - low if high >= 1.0 else min(rate - low, high - rate) for key, rate in rates.items()}
+    worst = min(room, key=lambda key: room[key])
     draws = int(np.count_nonzero(~results[worst].failed))
     kind, n, share = worst
     broken = tuple(

@@ -95,9 +95,8 @@ class TimeAxis:
             raise InputError("t", "expected plain numbers, as in the series, not points in time")
         elif column.dtype.kind not in "iuM":
             column = as_vector(column, "t")
-            if np.isinf(column).any():
-                raise InputError("t", "a time is infinite")
-            _check_size(column)
+            if np.any(np.abs(column) > LARGEST_TIME):
+                raise InputError("t", f"a time is beyond ±{LARGEST_TIME:g}")
         return column, self.to_internal(column)
 
     def from_internal(self, internal: FloatArray) -> npt.NDArray[np.float64] | npt.NDArray[np.datetime64]:
@@ -143,13 +142,12 @@ def as_times(t: ArrayLike) -> tuple[FloatArray, TimeAxis, npt.NDArray[Any]]:
         first = int(array.min())
         return _integers_since(array, first), TimeAxis("number", first), array
     numbers = as_vector(array, "t")
-    _check_size(numbers)
+    start, end = _limits(numbers)
+    _check_size(start, end)
     if array.dtype.kind == "O" and array.size:
         exact = _exact_integers(array)
         if exact is not None:
             return *exact, numbers
-    finite = numbers[np.isfinite(numbers)]
-    start = float(finite.min()) if finite.size else 0.0
     return numbers - start, TimeAxis("number", start), numbers
 
 
@@ -174,16 +172,23 @@ def _exact_integers(array: npt.NDArray[Any]) -> tuple[FloatArray, TimeAxis] | No
     return np.array(since), TimeAxis("number", first)
 
 
-def _check_size(numbers: FloatArray) -> None:
-    """Refuse plain times with which slopes and predictions would overflow."""
+def _limits(numbers: FloatArray) -> tuple[float, float]:
+    """Least and greatest of the finite times; 0 and 0 if there are none."""
+    if not numbers.size:
+        return 0.0, 0.0
+    low, high = float(numbers.min()), float(numbers.max())
+    if np.isfinite(low) and np.isfinite(high):
+        return low, high
     finite = numbers[np.isfinite(numbers)]
-    if not finite.size:
-        return
-    low, high = float(finite.min()), float(finite.max())
-    tiny = low < SMALLEST_TIME and bool(np.any((np.abs(finite) < SMALLEST_TIME) & (finite != 0.0)))
-    if max(high, -low) > LARGEST_TIME or tiny:
-        limits = f"0 or from {SMALLEST_TIME:g} to {LARGEST_TIME:g} in size"
-        raise InputError("t", f"plain times are {limits}; choose another unit")
+    return (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
+
+
+def _check_size(low: float, high: float) -> None:
+    """Refuse plain times with which slopes and predictions would overflow."""
+    largest = max(high, -low)
+    if largest > LARGEST_TIME or 0.0 < largest < SMALLEST_TIME:
+        limits = f"from {SMALLEST_TIME:g} to {LARGEST_TIME:g} in size"
+        raise InputError("t", f"the largest of plain times is {limits}; choose another unit")
 
 
 def as_moments(times: ArrayLike) -> npt.NDArray[np.datetime64]:

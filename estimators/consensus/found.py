@@ -6,7 +6,6 @@ that returns :class:`Found`. The engine knows no names of methods.
 
 from __future__ import annotations
 
-import functools
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -69,10 +68,16 @@ class LineData(LinearData):
         object.__setattr__(self, "y", y)
         object.__setattr__(self, "weights", weights)
 
-    @functools.cached_property
+    @property
     def columns(self) -> FloatArray:
         """Design, shape (2, n)."""
-        return np.stack((np.ones_like(self.t), self.t))
+        made: FloatArray | None = self.__dict__.get("_columns")
+        if made is None:
+            made = np.empty((2, self.t.size))
+            made[0] = 1.0
+            made[1] = self.t
+            self.__dict__["_columns"] = made
+        return made
 
     @property
     def p(self) -> int:

@@ -34,6 +34,9 @@ from estimators.trends.unpack import plain_column, unpack_series
 
 _DEFAULTS = RobustOptions()
 
+_LEAST_FLOOR = float(np.finfo(np.float64).eps) / LARGEST_VALUE
+"""Resolution of the smallest values that are fitted as they are; reached where all values are 0."""
+
 
 def fit_trend(
     t: ArrayLike,
@@ -217,7 +220,7 @@ def _settle_scale(
     options: RobustOptions,
 ) -> Scale | NoFit:
     """Collect what is known of the noise before the search; a pilot finds what the method needs."""
-    floor = scale_floor(data.y, quantisation)
+    floor = max(scale_floor(data.y, quantisation), _LEAST_FLOOR)
     if sigma is not None:
         floor = min(floor, sigma)
     given = Scale(sigma, "given", threshold, "given", floor)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from estimators.arrays import Reason
+from estimators.arrays import FloatArray, Reason
 from estimators.consensus.found import Found
 from estimators.consensus.presets import Preset
 from estimators.inference.sandwich import LineUncertainty
@@ -37,14 +37,17 @@ class Evidence:
     runner_up: RunnerUp | None
 
 
+_ABOUT_ROWS = ((Reason.missing, NoticeCode.missing_values), (Reason.invalid, NoticeCode.invalid_values))
+
+
 def input_notices(series: Series) -> tuple[Notice, ...]:
     """Notices about the input alone."""
     notices: list[Notice] = []
-    counts = np.bincount(series.reasons, minlength=len(Reason))
-    if counts[Reason.missing]:
-        notices.append(notice(NoticeCode.missing_values, rows=int(counts[Reason.missing])))
-    if counts[Reason.invalid]:
-        notices.append(notice(NoticeCode.invalid_values, rows=int(counts[Reason.invalid])))
+    if series.rows is not None:
+        for reason, code in _ABOUT_ROWS:
+            rows = int(np.count_nonzero(series.reasons == reason))
+            if rows:
+                notices.append(notice(code, rows=rows))
     if not series.was_sorted:
         notices.append(notice(NoticeCode.unsorted_times))
     if series.duplicate_times:
@@ -52,6 +55,11 @@ def input_notices(series: Series) -> tuple[Notice, ...]:
     if series.float_nanoseconds:
         notices.append(notice(NoticeCode.float_nanoseconds))
     return tuple(notices)
+
+
+def _is_constant(y: FloatArray) -> bool:
+    # The first pair settles it for nearly every series.
+    return bool(y[0] == y[-1]) and float(y.min()) == float(y.max())
 
 
 def collect_notices(seen: Evidence) -> tuple[Notice, ...]:
@@ -65,7 +73,7 @@ def collect_notices(seen: Evidence) -> tuple[Notice, ...]:
         notices.append(notice(NoticeCode.no_redundancy))
     elif n < FEW_POINTS:
         notices.append(notice(NoticeCode.few_points, points=n))
-    if float(seen.series.y.min()) == float(seen.series.y.max()):
+    if _is_constant(seen.series.y):
         notices.append(notice(NoticeCode.constant_values))
     elif n > 2 and _is_exact(seen):
         notices.append(notice(NoticeCode.zero_noise, sigma=found.sigma))

@@ -54,7 +54,9 @@ def test_no_number_of_a_short_answer_is_nan(method: str, n: int) -> None:
     answer = fit_trend(np.arange(float(n)), rng.normal(size=n), method=method)
     if answer:
         for estimate in answer.parameters.values():
-            assert np.isfinite([x for x in (estimate.value, estimate.stderr, estimate.low) if x is not None]).all()
+            assert np.isfinite(
+                [x for x in (estimate.value, estimate.stderr, estimate.low) if x is not None]
+            ).all()
         assert np.isfinite(answer.points.residual).all()
         assert answer.consensus.sigma > 0.0
 

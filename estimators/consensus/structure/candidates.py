@@ -21,9 +21,13 @@ CANDIDATES = MOST + PARENTS * PARALLELS
 
 _PER_OCTAVE = 3
 _LEAST_EVIDENCE = 2.5
+_FIRST_ROUND = 24
 _SECOND_ROUND = 10
-"""Candidates that get more than one step; their scores fall off steeply."""
-_PARALLEL_STEPS = 3
+"""Candidates that get one step of EM, and those that get more; their scores fall off steeply."""
+_ALWAYS = 3
+HOPELESS = 60.0
+"""Log evidence behind the best from which a candidate is given up, unless it is among the first few."""
+_PARALLEL_STEPS = 2
 _START_WIDTH = 2.5
 """Scales within which a reading is first taken for an inlier."""
 _CROWD = 4
@@ -53,18 +57,24 @@ def find_candidates(
     picks = np.empty(MOST, np.int64)
     octave = np.empty(MOST, np.int64)
     made = _shortlist(t, y, level, slope, picks, octave, counts)
+    counts[WEIGHED] = made
+    if made == 0:
+        return 0
     for q in range(made):
         h = picks[q]
         start(t, y, root_weight, level[h], slope[h], 2.0 ** -octave[q], sigma_floor, fixed, bank[q])
-    sift(t, y, root_weight, sigma_floor, fixed, bank, first, 0, made, made, 1, counts)
-    sift(t, y, root_weight, sigma_floor, fixed, bank, first, 0, made, _SECOND_ROUND, 2, counts)
+        first[q] = criterion(bank[q], t.size, 0)
+    sift(t, y, root_weight, sigma_floor, fixed, bank, first, 0, made, _FIRST_ROUND, _ALWAYS, 1, counts)
+    sift(t, y, root_weight, sigma_floor, fixed, bank, first, 0, made, _SECOND_ROUND, _ALWAYS, 2, counts)
     base = made
     made = _propose_parallels(t, y, bank, first, base)
     for q in range(base, made):
         width = _START_WIDTH * bank[q, SIGMA]
         start(t, y, root_weight, bank[q, LEVEL], bank[q, SLOPE], width, sigma_floor, fixed, bank[q])
+        first[q] = criterion(bank[q], t.size, 0)
+    few = made - base
     steps = _PARALLEL_STEPS
-    sift(t, y, root_weight, sigma_floor, fixed, bank, first, base, made, made - base, steps, counts)
+    sift(t, y, root_weight, sigma_floor, fixed, bank, first, base, made, few, few, steps, counts)
     counts[WEIGHED] = made
     return made
 
@@ -107,14 +117,21 @@ def sift(
     begin: int,
     end: int,
     keep: int,
+    always: int,
     steps: int,
     counts: IntArray,
 ) -> None:
-    """Take steps of EM for the best ``keep`` of the candidates begin:end, reordering them at each step."""
+    """Take steps of EM for the best ``keep`` of the candidates begin:end, reordering them at each step.
+
+    Beyond the first ``always``, hopeless ones are passed over.
+    """
     for _ in range(steps):
         order = np.argsort(-first[begin:end])
+        hopeless = first[:end].max() - HOPELESS
         for rank in range(min(keep, end - begin)):
             q = begin + order[rank]
+            if rank >= always and first[q] < hopeless:
+                break
             em_step(t, y, root_weight, 2, sigma_floor, fixed, False, bank[q])
             first[q] = criterion(bank[q], t.size, 0)
             counts[EVALUATIONS] += t.size

@@ -5,7 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from estimators.arrays import FloatArray, IntArray
-from estimators.consensus.structure.candidates import CANDIDATES, EVALUATIONS, among, find_candidates
+from estimators.consensus.structure.candidates import (
+    CANDIDATES,
+    EVALUATIONS,
+    HOPELESS,
+    among,
+    find_candidates,
+)
 from estimators.consensus.structure.criterion import IMPOSSIBLE, criterion, distance
 from estimators.consensus.structure.mixture import ABOVE, BELOW, INLIERS, SIGMA, SIZE, UNIFORM, em_step
 from estimators.kernels import device
@@ -15,8 +21,10 @@ FINALISTS = 5
 BANK = CANDIDATES + FINALISTS
 """Rows of a bank: candidates, then the finalists' best variants."""
 
+_LEAST_HEARD = 2
+"""The best line and a rival are heard even where the rival is hopeless: it may be worth a mention."""
 _FIRST_STEPS = 3
-_LAST_STEPS = 4
+_LAST_STEPS = 3
 _LAST_ROUND = 3
 """Finalists that are fitted to the whole series."""
 _APART = 2.0
@@ -119,7 +127,7 @@ def _choose_finalists(bank: FloatArray, first: FloatArray, made: int, finalists:
     broadest = -1
     for rank in range(made):
         q = order[rank]
-        if first[q] <= IMPOSSIBLE:
+        if first[q] <= IMPOSSIBLE or (heard >= _LEAST_HEARD and first[q] < first[order[0]] - HOPELESS):
             break
         if heard < FINALISTS - 1 and not among(bank, q, finalists, heard):
             finalists[heard] = q

@@ -33,7 +33,7 @@ TABLE = CELLS_PER_SIGMA * REACH
 """Cells of the weight tables: residuals from 0 to REACH scales; none beyond follows the line."""
 
 LONG = 65536
-"""Points beyond which sums that only need to be accurate to a per cent are taken from a part of the series."""
+"""Points beyond which sums that need be true to a per cent only are taken from a part of the series."""
 STRIDED = 16384
 """Points of that part."""
 

@@ -31,6 +31,23 @@ _TABULATED = int(LossKind.tabulated)
 
 
 @device
+def _range(y: FloatArray) -> tuple[float, float]:
+    """Least and greatest value; four chains, since one would wait for itself at every step."""
+    low0 = low1 = low2 = low3 = y[0]
+    high0 = high1 = high2 = high3 = y[0]
+    whole = y.size - y.size % 4
+    for i in range(0, whole, 4):
+        a, b, c, d = y[i], y[i + 1], y[i + 2], y[i + 3]
+        low0, high0 = min(low0, a), max(high0, a)
+        low1, high1 = min(low1, b), max(high1, b)
+        low2, high2 = min(low2, c), max(high2, c)
+        low3, high3 = min(low3, d), max(high3, d)
+    for i in range(whole, y.size):
+        low0, high0 = min(low0, y[i]), max(high0, y[i])
+    return min(low0, low1, low2, low3), max(high0, high1, high2, high3)
+
+
+@device
 def fit_series(
     t: FloatArray,
     y: FloatArray,
@@ -50,11 +67,7 @@ def fit_series(
     """Fit one series whose times lie in [-1, 1]; values in their own units."""
     n = t.size
     record[:] = 0.0
-    low = y[0]
-    high = y[0]
-    for i in range(n):
-        low = min(low, y[i])
-        high = max(high, y[i])
+    low, high = _range(y)
     middle = 0.5 * low + 0.5 * high
     unit = high - low
     if unit <= 0.0:

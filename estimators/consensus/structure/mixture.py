@@ -39,6 +39,8 @@ CORRELATION = 16  # of successive residuals of readings that follow the line
 SIZE = 17
 
 _ROOT_2PI = 2.5066282746310002
+_ROOT_2PI_E = 4.132731354122493  # root of 2 pi e: a normal law's entropy is its logarithm
+_HELD_WIDTH = 4.0
 _STUDENT5 = 0.3796066898224944  # density of Student's t with 5 degrees of freedom at 0
 LEVEL_GAIN = 0.03
 TAU_FLOOR = 0.5
@@ -62,6 +64,18 @@ def decay(z: float) -> float:
 
 
 @device
+def _chain(moved: float, all_of_them: float) -> float:
+    """Log-likelihood of a two-state chain's moves from one state, at their own frequency."""
+    stayed = all_of_them - moved
+    value = 0.0
+    if moved > 0.0:
+        value += moved * math.log(moved / all_of_them)
+    if stayed > 0.0:
+        value += stayed * math.log(stayed / all_of_them)
+    return value
+
+
+@device
 def start(
     t: FloatArray,
     y: FloatArray,
@@ -73,7 +87,10 @@ def start(
     fixed: float,
     params: FloatArray,
 ) -> None:
-    """Set the parameters of a candidate from labels cut at ``scale``: one pass without transcendentals."""
+    """Set the parameters of a candidate from labels cut at ``scale``: one pass without transcendentals.
+
+    The likelihood is that of the hard labels, good enough to tell which candidates deserve a better one.
+    """
     n = t.size
     inside = 0.0
     square = 0.0
@@ -110,6 +127,15 @@ def start(
     params[HELD_SCALE] = 1.5 * sigma
     params[ENTER] = (1.0 + entered) / (2.0 + n - 1.0 - from_out)
     params[STAY] = (1.0 + outside_twice) / (2.0 + from_out)
+    params[INLIERS] = inside
+    params[HELD_COUNT] = held
+    params[TIME_SPREAD] = inside / 3.0  # as if spread evenly over [-1, 1]
+    params[LIKELIHOOD] = (
+        -inside * math.log(sigma * _ROOT_2PI_E)
+        - held * math.log(_HELD_WIDTH * scale)
+        + _chain(entered, n - 1.0 - from_out)
+        + _chain(outside_twice, from_out)
+    )
 
 
 @device

@@ -34,50 +34,56 @@ def pick_lines(
     the list with its tilts.
     """
     n = t.size
-    height = np.empty(count)
+    alive = np.empty(count, np.int64)
     for o in range(2, OCTAVES):
         scale = 2.0**-o
+        living = 0
         for h in range(count):
             here = evidence[o, h]
             finer = evidence[o + 1, h] if o + 1 < OCTAVES else 0.0
-            height[h] = here if here > least and here >= evidence[o - 1, h] and here > finer else 0.0
+            if here > least and here >= evidence[o - 1, h] and here > finer:
+                alive[living] = h
+                living += 1
         for _ in range(per_octave):
-            best = -1
-            best_height = 0.0
-            for h in range(count):
-                if height[h] > best_height:
-                    best_height = height[h]
-                    best = h
-            if best < 0 or made == picks.size:
+            if living == 0 or made == picks.size:
                 break
+            best = alive[0]
+            for k in range(1, living):
+                if evidence[o, alive[k]] > evidence[o, best]:
+                    best = alive[k]
             s0 = 0.0
             s1 = 0.0
             s2 = 0.0
             for i in range(n):
                 r = y[i] - level[best] - slope[best] * t[i]
-                if abs(r) <= scale:
-                    s0 += 1.0
-                    s1 += t[i]
-                    s2 += t[i] * t[i]
+                inside = 1.0 if abs(r) <= scale else 0.0
+                s0 += inside
+                s1 += inside * t[i]
+                s2 += inside * t[i] * t[i]
             mean = s1 / s0
             spread = np.sqrt(max(0.0, s2 / s0 - mean * mean))
             reach = SAME_LINE * scale
-            for h in range(count):
-                if height[h] > 0.0:
-                    da = level[h] - level[best]
-                    db = slope[h] - slope[best]
-                    if abs(da + db * (mean - spread)) < reach and abs(da + db * (mean + spread)) < reach:
-                        height[h] = 0.0
-            height[best] = 0.0
+            left = 0
+            for k in range(living):
+                h = alive[k]
+                if not _is_near(level[h] - level[best], slope[h] - slope[best], mean, spread, reach):
+                    alive[left] = h
+                    left += 1
+            living = left
             known = False
             for q in range(made):
                 if abs(pick_octave[q] - o) <= 1:
-                    da = level[picks[q]] - level[best]
-                    db = slope[picks[q]] - slope[best]
-                    near = abs(da + db * (mean - spread)) < reach and abs(da + db * (mean + spread)) < reach
-                    known = known or near
+                    h = picks[q]
+                    da, db = level[h] - level[best], slope[h] - slope[best]
+                    known = known or _is_near(da, db, mean, spread, reach)
             if not known:
                 picks[made] = best
                 pick_octave[made] = o
                 made += 1
     return made
+
+
+@device
+def _is_near(level: float, slope: float, mean: float, spread: float, reach: float) -> bool:
+    """Whether a difference of lines stays within ``reach`` where the inliers are."""
+    return abs(level + slope * (mean - spread)) < reach and abs(level + slope * (mean + spread)) < reach
