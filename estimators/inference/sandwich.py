@@ -21,6 +21,8 @@ LEAST_PAIRS = 5
 """Neighbouring inliers from which a correlation is estimated."""
 
 MOST_CORRELATION = 0.98
+LEAST_DOF = 3.0
+"""However correlated, inliers that were told from outliers are more than two readings."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +85,7 @@ def line_uncertainty(
     -----
     The variance is the larger of the sandwich and s^2 A^-1 (METHODS_TRENDS: "Interval"). With S effective
     inliers it is multiplied by (S / (S - 3))^2, the first-order correction for the leverage that two
-    coefficients and a scale have on their own residuals, and Student's t takes 0.6 S / f - 2 degrees of
+    coefficients and a scale have on their own residuals, and Student's t takes 0.5 S / f - 1 degrees of
     freedom: the scale of few points, told from outliers by the same points, is itself uncertain. Both were
     chosen by the coverage of 20 to 50 inliers (``benchmarks``).
     """
@@ -129,7 +131,7 @@ def line_uncertainty(
         slope_variance=v11 * factor,
         effective_n=max(effective / widen, 1.0),
         lag1=lag1,
-        dof=max(0.6 * effective / widen - 2.0, 1.0),
+        dof=max(0.5 * effective / widen - 1.0, LEAST_DOF),
     )
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from estimators.arrays import FloatArray, InputError
 from estimators.consensus.found import Found, LinearData, OtherStructure, Scale
-from estimators.consensus.search.closed import OrdinaryLeastSquares
+from estimators.consensus.search.closed import OrdinaryLeastSquares, no_fit
 from estimators.consensus.stopping import clean_probability
 from estimators.consensus.structure import record as slots
 from estimators.consensus.structure.finish import TABLE
@@ -16,10 +16,13 @@ from estimators.consensus.structure.kernel import fit_structures
 from estimators.options import RobustOptions
 from estimators.regression.influence import INLIERS, SUMS
 from estimators.regression.loss import Loss, LossKind
-from estimators.result import Ledger, NoFit
+from estimators.result import Ledger, NoFit, NoFitReason
 
 LEAST_POINTS = 4
 """With fewer points no structure can be told from another (METHODS.md 13.4)."""
+
+MANY_POINTS = 8
+"""With fewer points, and no line that stands out, all of them are taken for inliers."""
 
 _NO_WEIGHTS = np.empty(0)
 
@@ -49,7 +52,8 @@ class StructureSearch:
         Returns
         -------
         Found or NoFit
-            Least squares on all points where there are fewer than four, or where no line stands out.
+            Least squares on all points where there are fewer than four, or fewer than eight and no line
+            stands out; ``NoFit`` where none does among more.
         """
         if data.p != 2:
             raise InputError("method", f"auto fits lines only; this model has {data.p} coefficients")
@@ -70,7 +74,11 @@ class StructureSearch:
         )  # fmt: skip
         record = records[0]
         if not record[slots.FOUND]:
-            return OrdinaryLeastSquares().run(data, scale, options, seed)
+            if n < MANY_POINTS and scale.sigma is None:
+                return OrdinaryLeastSquares().run(data, scale, options, seed)
+            advice = "give a larger sigma, or none" if scale.sigma is not None else "try method='mm'"
+            message = f"No line stands out among the points; {advice}."
+            return no_fit(NoFitReason.no_consensus, message, data)
         inliers = int(sums[0, INLIERS])
         drawn = int(record[slots.PROPOSED])
         sigma = float(record[slots.SIGMA])

@@ -6,13 +6,11 @@ import numpy as np
 
 from estimators.arrays import FloatArray, IntArray
 from estimators.consensus.structure.criterion import IMPOSSIBLE, criterion, same_structure
-from estimators.consensus.structure.hypotheses import OCTAVES, propose_lines, scale_evidence
+from estimators.consensus.structure.hypotheses import OCTAVES, PAIRS, propose_lines, scale_evidence
 from estimators.consensus.structure.mixture import LEVEL, SIGMA, SLOPE, em_step, start
 from estimators.consensus.structure.shortlist import pick_lines
 from estimators.kernels import device
 
-PAIRS = 300
-"""Lines proposed; twice as many find hardly more (METHODS_TRENDS: "250 pairs do as well")."""
 MOST = 40
 """Proposed lines that are weighed."""
 PARENTS, PARALLELS = 2, 3
@@ -25,8 +23,8 @@ _FIRST_ROUND = 24
 _SECOND_ROUND = 10
 """Candidates that get one step of EM, and those that get more; their scores fall off steeply."""
 _ALWAYS = 3
-HOPELESS = 60.0
-"""Log evidence behind the best from which a candidate is given up, unless it is among the first few."""
+_HOPELESS = 60.0
+_HOPELESS_PER_POINT = 0.5
 _PARALLEL_STEPS = 2
 _START_WIDTH = 2.5
 """Scales within which a reading is first taken for an inlier."""
@@ -127,7 +125,7 @@ def sift(
     """
     for _ in range(steps):
         order = np.argsort(-first[begin:end])
-        hopeless = first[:end].max() - HOPELESS
+        hopeless = first[:end].max() - patience(t.size)
         for rank in range(min(keep, end - begin)):
             q = begin + order[rank]
             if rank >= always and first[q] < hopeless:
@@ -135,6 +133,12 @@ def sift(
             em_step(t, y, root_weight, 2, sigma_floor, fixed, False, bank[q])
             first[q] = criterion(bank[q], t.size, 0)
             counts[EVALUATIONS] += t.size
+
+
+@device
+def patience(n: int) -> float:
+    """Log evidence behind the best from which a candidate is given up; long series settle later."""
+    return max(_HOPELESS, _HOPELESS_PER_POINT * n)
 
 
 @device

@@ -8,12 +8,27 @@ from estimators.arrays import FloatArray, IntArray
 from estimators.consensus.structure.candidates import (
     CANDIDATES,
     EVALUATIONS,
-    HOPELESS,
     among,
     find_candidates,
+    patience,
 )
-from estimators.consensus.structure.criterion import IMPOSSIBLE, criterion, distance
-from estimators.consensus.structure.mixture import ABOVE, BELOW, INLIERS, SIGMA, SIZE, UNIFORM, em_step
+from estimators.consensus.structure.criterion import CORRELATION_PRICE, IMPOSSIBLE, criterion, distance
+from estimators.consensus.structure.mixture import (
+    ABOVE,
+    BELOW,
+    CORRELATION,
+    ENTER,
+    HELD_COUNT,
+    INLIERS,
+    LEVEL,
+    LIKELIHOOD,
+    SIGMA,
+    SIZE,
+    SLOPE,
+    STAY,
+    UNIFORM,
+    em_step,
+)
 from estimators.kernels import device
 
 FINALISTS = 5
@@ -27,6 +42,12 @@ _FIRST_STEPS = 3
 _LAST_STEPS = 3
 _LAST_ROUND = 3
 """Finalists that are fitted to the whole series."""
+_NEVER = 1e-9
+"""Chance of contamination where there is none."""
+_PARAMETERS = 3.0
+"""Parameters of contamination: how often it comes, how long it stays, what it looks like."""
+_SEARCHED = 2.7
+"""What the best of all structures gains on clean noise by having been searched for."""
 _APART = 2.0
 """Scales by which a runner-up must differ from the best line."""
 
@@ -55,7 +76,7 @@ def find_structure(
     first = np.full(CANDIDATES, IMPOSSIBLE)
     made = find_candidates(thin_t, thin_y, thin_root, sigma_floor, fixed, bank, first, counts)
     finalists = np.empty(FINALISTS, np.int64)
-    heard = _choose_finalists(bank, first, made, finalists)
+    heard = _choose_finalists(bank, first, made, patience(thin_t.size), finalists)
     variant = np.empty(SIZE)
     for f in range(heard):
         row = CANDIDATES + f
@@ -85,7 +106,52 @@ def find_structure(
                 best = row
         else:
             scores[row] = IMPOSSIBLE
+    if best >= 0:
+        _acquit(t, y, root_weight, sigma_floor, fixed, bank[best])
     return best
+
+
+@device
+def _acquit(
+    t: FloatArray,
+    y: FloatArray,
+    root_weight: FloatArray,
+    sigma_floor: float,
+    fixed: float,
+    params: FloatArray,
+) -> None:
+    """Replace the best structure by plain least squares if contamination explains the series hardly better.
+
+    A mixture always takes a little of the tails of clean noise for contamination, and may take a part of a
+    clean series for its trend. Its parameters have to pay for themselves, by half a log n each (Schwarz
+    1978), against normal noise alone, correlated or not.
+    """
+    n = t.size
+    square = 0.0
+    for i in range(n):
+        r = (y[i] - params[LEVEL] - params[SLOPE] * t[i]) * root_weight[i]
+        square += r * r
+    alone = params.copy()
+    alone[SIGMA] = fixed if fixed > 0.0 else max(sigma_floor, np.sqrt(square / n))
+    alone[UNIFORM] = 1.0
+    alone[ABOVE] = 0.0
+    alone[BELOW] = 0.0
+    alone[CORRELATION] = 0.0
+    # The first steps find the line, its scale and its residuals' correlation; the last, their likelihood.
+    for _ in range(3):
+        alone[ENTER] = _NEVER
+        alone[STAY] = 0.5
+        em_step(t, y, root_weight, 0, sigma_floor, fixed, True, alone)
+    gain = params[LIKELIHOOD] - alone[LIKELIHOOD]
+    if params[CORRELATION] > 0.0:
+        gain -= CORRELATION_PRICE
+    if alone[CORRELATION] > 0.0:
+        gain += CORRELATION_PRICE
+    if gain < _SEARCHED + _PARAMETERS * 0.5 * np.log(n):
+        params[:] = alone
+        params[UNIFORM] = 1.0
+        params[INLIERS] = n
+        params[HELD_COUNT] = 0.0
 
 
 @device
@@ -120,14 +186,16 @@ def _refine(
 
 
 @device
-def _choose_finalists(bank: FloatArray, first: FloatArray, made: int, finalists: IntArray) -> int:
+def _choose_finalists(
+    bank: FloatArray, first: FloatArray, made: int, hopeless: float, finalists: IntArray
+) -> int:
     """Fill ``finalists`` with the best different lines, and the one with most inliers; returns how many."""
     order = np.argsort(-first[:made])
     heard = 0
     broadest = -1
     for rank in range(made):
         q = order[rank]
-        if first[q] <= IMPOSSIBLE or (heard >= _LEAST_HEARD and first[q] < first[order[0]] - HOPELESS):
+        if first[q] <= IMPOSSIBLE or (heard >= _LEAST_HEARD and first[q] < first[order[0]] - hopeless):
             break
         if heard < FINALISTS - 1 and not among(bank, q, finalists, heard):
             finalists[heard] = q

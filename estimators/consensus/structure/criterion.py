@@ -23,19 +23,19 @@ IMPOSSIBLE = -1e300
 # The exact volume of a posterior would weigh ln s by 2 and ln(S Sxx) by 1/2 (Laplace's approximation with
 # flat priors on level and slope). Smaller weights favour fine structures over broad ones a little; they were
 # chosen on one-sided contamination of 80 %, where the broad line through the cloud competes with its edge.
-_SCALE = 0.65
+_SCALE = 0.6
 _INFORMATION = 0.4
 _SHARE = 0.5
 _HELD = 5.0
 """Price of contamination that stands on levels of its own: settles ties between branches by majority."""
-_ONE_SIDE = 0.15
+_ONE_SIDE = 0.1
 _BOTH_SIDES = 3.0
 """Prices of one-sided and two-sided errors, in ln n."""
-_CORRELATION = 6.0
+CORRELATION_PRICE = 6.0
 """Price of correlated neighbours: a wandering excursion must not pass for correlated noise too easily."""
 
 _LEAST_SUPPORT = 6.0
-"""Inliers that a structure needs in a long series (METHODS.md 2.1: t - s about 5); fewer in a short one."""
+"""Inliers that a structure needs (METHODS.md 2.1: t - s about 5); half the points of a short series."""
 
 
 @device
@@ -46,14 +46,14 @@ def criterion(params: FloatArray, n: int, sides: int) -> float:
     ratio to held excursions, and prices on what the mixture was allowed to use.
     """
     support = params[INLIERS]
-    enough = min(_LEAST_SUPPORT, 3.0 + n / 16.0)
+    enough = min(_LEAST_SUPPORT, 0.5 * n + 0.5)
     if params[LIKELIHOOD] <= IMPOSSIBLE or support < enough or params[TIME_SPREAD] <= 0.0:
         return IMPOSSIBLE
     value = params[LIKELIHOOD] + _SCALE * math.log(params[SIGMA])
     value -= _INFORMATION * math.log(support * params[TIME_SPREAD])
     value += _SHARE * math.log(support / n) + _HELD * math.log(support / (support + params[HELD_COUNT]))
     if params[CORRELATION] > 0.0:
-        value -= _CORRELATION
+        value -= CORRELATION_PRICE
     if sides == 2:
         value -= _BOTH_SIDES * math.log(n)
     elif sides != 0:

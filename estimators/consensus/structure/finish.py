@@ -69,8 +69,8 @@ def fill_tables(params: FloatArray, n: int, weight: FloatArray, follow: FloatArr
         f_below = uniform
         if below > 0.0:
             f_below += below * (apart + down) / (down * down) * math.exp(-r / down) * gap
-        # 0 at the ends, so that clamping beyond them is continuous.
-        inside = 0.0 if k == TABLE else 1.0
+        # The last cell is 0 throughout: residuals beyond it, of any size, are clamped into it.
+        inside = 0.0 if k >= TABLE - 1 else 1.0
         follow[TABLE + k] = inside * f_in / (f_in + outliers * f_above)
         follow[TABLE - k] = inside * f_in / (f_in + outliers * f_below)
         weight[k] = min(follow[TABLE + k], follow[TABLE - k])

@@ -22,6 +22,9 @@ from estimators.kernels import device
 MIN_GAP = 0.3
 """Smallest distance in time of a pair, in the frame [-1, 1]."""
 
+PAIRS = 300
+"""Lines proposed; twice as many find hardly more (METHODS_TRENDS: "250 pairs do as well")."""
+
 OCTAVES = 26
 """Octaves of scale below the range of the values that the histogram tells apart."""
 

@@ -11,8 +11,8 @@ from estimators.consensus.structure.candidates import EVALUATIONS, PROPOSED, WEI
 from estimators.consensus.structure.choice import BANK, find_second, find_structure
 from estimators.consensus.structure.criterion import IMPOSSIBLE
 from estimators.consensus.structure.finish import TABLE, fill_tables, label_points, mean_square, solve_line
+from estimators.consensus.structure.frame import fit_frame, thin, to_frame
 from estimators.consensus.structure.mixture import LEVEL, SIGMA, SIZE, SLOPE
-from estimators.consensus.structure.thinning import thin, to_unit_range
 from estimators.kernels import device, kernel, ro
 from estimators.regression.influence import A0, A1, A2, INLIERS, SSE, W0, W1, W2, sum_scatter
 from estimators.regression.loss import LossKind
@@ -28,23 +28,6 @@ _FINEST = 1e-7
 """Least noise scale in units of the range: single precision tells no finer structure apart."""
 
 _TABULATED = int(LossKind.tabulated)
-
-
-@device
-def _range(y: FloatArray) -> tuple[float, float]:
-    """Least and greatest value; four chains, since one would wait for itself at every step."""
-    low0 = low1 = low2 = low3 = y[0]
-    high0 = high1 = high2 = high3 = y[0]
-    whole = y.size - y.size % 4
-    for i in range(0, whole, 4):
-        a, b, c, d = y[i], y[i + 1], y[i + 2], y[i + 3]
-        low0, high0 = min(low0, a), max(high0, a)
-        low1, high1 = min(low1, b), max(high1, b)
-        low2, high2 = min(low2, c), max(high2, c)
-        low3, high3 = min(low3, d), max(high3, d)
-    for i in range(whole, y.size):
-        low0, high0 = min(low0, y[i]), max(high0, y[i])
-    return min(low0, low1, low2, low3), max(high0, high1, high2, high3)
 
 
 @device
@@ -67,19 +50,19 @@ def fit_series(
     """Fit one series whose times lie in [-1, 1]; values in their own units."""
     n = t.size
     record[:] = 0.0
-    low, high = _range(y)
-    middle = 0.5 * low + 0.5 * high
-    unit = high - low
-    if unit <= 0.0:
-        unit = max(floor, 1e-300)
     index = np.empty(min(n, WEIGH_ON), np.int64)
     m = thin(n, WEIGH_ON, index)
-    whole_t = np.empty(m)
-    whole_y = np.empty(m)
-    to_unit_range(t, y, index, middle, unit, whole_t, whole_y)
-    whole_root = root_weight[index] if weighted else np.ones(m)
+    sample_t = t[index]
+    sample_y = y[index]
+    frame = np.empty(4)
     subset = np.empty(min(m, PROPOSE_FROM), np.int64)
     h = thin(m, PROPOSE_FROM, subset)
+    fit_frame(sample_t[subset], sample_y[subset], floor, frame)
+    whole_t = np.empty(m)
+    whole_y = np.empty(m)
+    to_frame(sample_t, sample_y, frame, whole_t, whole_y)
+    whole_root = root_weight[index] if weighted else np.ones(m)
+    unit = frame[2]
     bank = np.zeros((BANK, SIZE))
     scores = np.full(BANK, IMPOSSIBLE)
     sides_of = np.zeros(BANK, np.int64)
@@ -108,8 +91,8 @@ def fit_series(
     follow = np.empty(2 * TABLE + 1)
     fill_tables(chosen, m, weight, follow)
     s = chosen[SIGMA] * unit
-    level = middle + chosen[LEVEL] * unit
-    slope = chosen[SLOPE] * unit
+    level = frame[0] + chosen[LEVEL] * unit
+    slope = frame[1] + chosen[SLOPE] * unit
     if n > WEIGH_ON and given_sigma <= 0.0:
         # A thousand points know the scale to 3 %; more of the series know it better.
         rows = np.empty(min(n, MEASURE_ON), np.int64)
@@ -129,7 +112,7 @@ def fit_series(
     sums[A0], sums[A1], sums[A2] = newton[2], newton[3], newton[4]
     sums[W0], sums[W1], sums[W2] = newton[5], newton[6], newton[7]
     sum_scatter(t, y, residual, root_weight, s, threshold, _TABULATED, 0.0, 0.0, weight, sums)
-    if given_sigma <= 0.0 and chosen[SIGMA] <= 2.0 * finest and sums[INLIERS] > 2.0:
+    if given_sigma <= 0.0 and chosen[SIGMA] <= 10.0 * finest and sums[INLIERS] > 2.0:
         # The structure is as fine as could be told apart; how fine it really is, its inliers say.
         s = max(floor, np.sqrt(sums[SSE] / (sums[INLIERS] - 2.0)))
     record[slots.FOUND] = 1.0
@@ -139,9 +122,7 @@ def fit_series(
     record[slots.THRESHOLD] = threshold
     second = find_second(bank, scores, best)
     if second >= 0:
-        _report_second(
-            t, y, root_weight, weighted, bank[second], middle, unit, threshold_sigmas, inlier, record
-        )
+        _report_second(t, y, root_weight, weighted, bank[second], frame, threshold_sigmas, inlier, record)
         record[slots.RUNNER_MARGIN] = scores[best] - scores[second]
 
 
@@ -152,16 +133,15 @@ def _report_second(
     root_weight: FloatArray,
     weighted: bool,
     params: FloatArray,
-    middle: float,
-    unit: float,
+    frame: FloatArray,
     threshold_sigmas: float,
     inlier: BoolArray,
     record: FloatArray,
 ) -> None:
     """Write the runner-up, and the number of points that follow it and not the answer."""
-    s = params[SIGMA] * unit
-    level = middle + params[LEVEL] * unit
-    slope = params[SLOPE] * unit
+    s = params[SIGMA] * frame[2]
+    level = frame[0] + params[LEVEL] * frame[2]
+    slope = frame[1] + params[SLOPE] * frame[2]
     only = 0
     for i in range(t.size):
         root = root_weight[i] if weighted else 1.0

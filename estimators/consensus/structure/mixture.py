@@ -220,28 +220,29 @@ def em_step(
         root = root_weight[i]
         raw = y[i] - a - b * t[i]
         r = raw * root
+        # Densities of whitened residuals times the root of the weight are densities of the values.
         if rho > 0.0:
             expected *= rho
             known *= rho * rho
             left = 1.0 / math.sqrt(1.0 - known)
             u = (r - expected) * inverse_s * left
-            f_in = narrow * left * decay(0.5 * u * u)
+            f_in = narrow * root * left * decay(0.5 * u * u)
         else:
             u = r * inverse_s
-            f_in = narrow * decay(0.5 * u * u)
+            f_in = narrow * root * decay(0.5 * u * u)
         # One-sided errors above or below, whichever side the reading is on.
         is_above = 1.0 if r > 0.0 else 0.0
         distance = abs(r)
         height = below_height + is_above * (above_height - below_height)
         rate = below_rate + is_above * (above_rate - below_rate)
-        g_side = height * decay(distance * rate) * (1.0 - decay(distance * inverse_apart))
+        g_side = height * root * decay(distance * rate) * (1.0 - decay(distance * inverse_apart))
         f_free = uniform + g_side
         f_held = 0.0
         tail = 0.0
         if age > 0.0:
             away = (r - level) * inverse_tau
             tail = 1.0 / (1.0 + 0.2 * away * away)
-            f_held = held_height * tail * tail * tail
+            f_held = held_height * root * tail * tail * tail
             f_out = (1.0 - held_share) * f_free + held_share * f_held
         else:
             f_out = f_free
