@@ -9,6 +9,7 @@ import numpy as np
 from estimators.arrays import FloatArray, InputError
 from estimators.consensus.found import Found, LinearData, OtherStructure, Scale
 from estimators.consensus.search.closed import OrdinaryLeastSquares, no_fit
+from estimators.consensus.search.mm import MMSearch
 from estimators.consensus.stopping import clean_probability
 from estimators.consensus.structure import record as slots
 from estimators.consensus.structure.finish import TABLE
@@ -20,9 +21,6 @@ from estimators.result import Ledger, NoFit, NoFitReason
 
 LEAST_POINTS = 4
 """With fewer points no structure can be told from another (METHODS.md 13.4)."""
-
-MANY_POINTS = 8
-"""With fewer points, and no line that stands out, all of them are taken for inliers."""
 
 _NO_WEIGHTS = np.empty(0)
 
@@ -52,8 +50,8 @@ class StructureSearch:
         Returns
         -------
         Found or NoFit
-            Least squares on all points where there are fewer than four, or fewer than eight and no line
-            stands out; ``NoFit`` where none does among more.
+            Least squares on all points where there are fewer than four, an MM-estimate where no line stands
+            out; ``NoFit`` where none does at a given sigma.
         """
         if data.p != 2:
             raise InputError("method", f"auto fits lines only; this model has {data.p} coefficients")
@@ -74,11 +72,7 @@ class StructureSearch:
         )  # fmt: skip
         record = records[0]
         if not record[slots.FOUND]:
-            if n < MANY_POINTS and scale.sigma is None:
-                return OrdinaryLeastSquares().run(data, scale, options, seed)
-            advice = "give a larger sigma, or none" if scale.sigma is not None else "try method='mm'"
-            message = f"No line stands out among the points; {advice}."
-            return no_fit(NoFitReason.no_consensus, message, data)
+            return _without_structure(data, scale, options)
         inliers = int(sums[0, INLIERS])
         drawn = int(record[slots.PROPOSED])
         sigma = float(record[slots.SIGMA])
@@ -104,6 +98,15 @@ class StructureSearch:
             runner_up=_runner_up(record),
             sums=sums[0],
         )
+
+
+def _without_structure(data: LinearData, scale: Scale, options: RobustOptions) -> Found | NoFit:
+    """MM-estimate, which needs no structure that stands out: for few points, and for a very large sigma."""
+    found = MMSearch().run(data, scale, options, seed=0)
+    if isinstance(found, NoFit) or scale.sigma is None or 2 * np.count_nonzero(found.inlier) >= data.n:
+        return found
+    message = "No line stands out among the points at this noise scale; give a larger sigma, or none."
+    return no_fit(NoFitReason.no_consensus, message, data)
 
 
 def _runner_up(record: FloatArray) -> OtherStructure | None:
