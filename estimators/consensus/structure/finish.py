@@ -35,7 +35,7 @@ TABLE = CELLS_PER_SIGMA * REACH
 LONG = 65536
 """Points beyond which sums that need be true to a per cent only are taken from a part of the series."""
 STRIDED = 16384
-"""Points of that part."""
+"""Points of that part, about."""
 
 _ROOT_2PI = 2.5066282746310002
 

@@ -1,8 +1,9 @@
 """What a line leaves unexplained: a mixture with sticky labels along the time axis, fitted by EM.
 
 A reading follows the line (a normal law of scale s) or is contaminated. Contaminated readings come as
-uniform ones over the range of the values; as errors to one side or both (exponential and Gamma(2) with a
-mean of at least 3 s); or as an excursion that keeps a level of its own while it lasts. Labels are sticky:
+uniform ones over the range of the values; as errors to one side or both, whose density is 0 at the line and
+falls off exponentially (the sum of two exponential laws); or as an excursion that keeps a level of its own
+while it lasts. Readings that follow the line may be correlated with their neighbours. Labels are sticky:
 a two-state chain whose forward filter (Hamilton 1989) gives each reading's probability and the
 likelihood of the series. A fresh excursion pays for its unknown level once, ln(range); a structure is
 therefore judged by how often in time the readings leave it, and not only by how many do
@@ -13,9 +14,8 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from estimators.arrays import FloatArray
+from estimators.consensus.structure.decay import decay
 from estimators.kernels import device
 
 # Slots of a candidate's parameter vector.
@@ -40,27 +40,22 @@ SIZE = 17
 
 _ROOT_2PI = 2.5066282746310002
 _ROOT_2PI_E = 4.132731354122493  # root of 2 pi e: a normal law's entropy is its logarithm
-_HELD_WIDTH = 4.0
+_HELD_WIDTH = 4.0  # width of an excursion's level in the hard labels' likelihood, in their scale
 _STUDENT5 = 0.3796066898224944  # density of Student's t with 5 degrees of freedom at 0
+
 LEVEL_GAIN = 0.03
+"""Least gain with which the level of an excursion is followed: slow, so that it means something."""
 TAU_FLOOR = 0.5
+"""Least scale of readings about an excursion's level, in noise scales; it may be finer than the line's."""
 SIDE_FLOOR = 3.0
+"""Least scale of one-sided errors, in noise scales (METHODS_TRENDS: "mean >= 3 s")."""
 SEPARATION = 8.0
+"""Scale on which the density of one-sided errors rises from 0 at the line, in noise scales.
+
+Errors stand apart from the noise; this is the dial that tells the edge of a one-sided cloud from its middle.
+"""
 CORRELATION_FLOOR = 2.0
-
-
-_DECAY_CELLS = 16
-_DECAY_REACH = 44
-_DECAY = np.exp(-np.arange(_DECAY_CELLS * _DECAY_REACH + 1) / _DECAY_CELLS)
-
-
-@device
-def decay(z: float) -> float:
-    """exp(-z) for z >= 0, to a relative 1e-6 and at least 1e-19: enough to weigh structures, and fast."""
-    x = min(z, _DECAY_REACH - 1e-9) * _DECAY_CELLS
-    k = int(x)
-    f = (x - k) * (1.0 / _DECAY_CELLS)
-    return float(_DECAY[k]) * (1.0 - f * (1.0 - f * (0.5 - f * (1.0 / 6.0))))
+"""Correlations below this many standard errors, 1 / sqrt(n), count as none."""
 
 
 @device
