@@ -88,7 +88,7 @@ def fit_plumbline(method: str, t: FloatArray, y: FloatArray, threshold: float | 
         return no_line(t.size)
     slope, line = trend.parameters["slope"], trend.geometry
     return Answer(
-        ends=line.level + line.slope * (np.array(line.span) - line.center),
+        ends=line.value(np.array(line.span)),
         flagged=~trend.points.inlier,
         low=np.nan if slope.low is None else slope.low,
         high=np.nan if slope.high is None else slope.high,

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import io
 import threading
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Literal
@@ -27,8 +28,7 @@ from estimators.adapters.figure_strokes import (
     dress_axes,
 )
 from estimators.arrays import InputError
-from estimators.trends.facts import slope_unit
-from estimators.trends.units import rounded
+from estimators.trends.units import rounded, slope_unit
 
 if TYPE_CHECKING:
     from estimators.trends.trend import Trend
@@ -144,7 +144,9 @@ def render(figure: Figure, format: FigureFormat) -> bytes:  # noqa: A002
 def _settings() -> Iterator[None]:
     """Put matplotlib's defaults and ours in force, whatever its user configured, one thread at a time."""
     ours = {"svg.hashsalt": "plumbline", "svg.fonttype": "none", "font.family": "sans-serif"}
-    with _LOCK, mpl_style.context(["default", ours]):
+    with _LOCK, mpl_style.context(["default", ours]), warnings.catch_warnings():
+        # A letter that the font lacks is drawn as a box; in an SVG the reader's fonts have it.
+        warnings.filterwarnings("ignore", message="Glyph .* missing from font", category=UserWarning)
         yield
 
 

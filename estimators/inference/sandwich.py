@@ -21,6 +21,10 @@ LEAST_PAIRS = 5
 """Neighbouring inliers from which a correlation is estimated."""
 
 MOST_CORRELATION = 0.98
+_FITTED = 4.0
+"""Readings that two coefficients, a scale and the choice of inliers use up."""
+_DOF_SHARE = 0.4
+"""Degrees of freedom that an effective inlier adds."""
 LEAST_DOF = 3.0
 """However correlated, inliers that were told from outliers are more than two readings."""
 
@@ -84,8 +88,8 @@ def line_uncertainty(
     Notes
     -----
     The variance is the larger of the sandwich and s^2 A^-1 (METHODS_TRENDS: "Interval"). With S effective
-    inliers it is multiplied by (S / (S - 3))^2, the first-order correction for the leverage that two
-    coefficients and a scale have on their own residuals, and Student's t takes 0.5 S / f - 1 degrees of
+    inliers it is multiplied by (S / (S - 4))^2, the first-order correction for the leverage that two
+    coefficients and a scale have on their own residuals, and Student's t takes 0.4 S / f - 1 degrees of
     freedom: the scale of few points, told from outliers by the same points, is itself uncertain. Both were
     chosen by the coverage of 20 to 50 inliers (``benchmarks``).
     """
@@ -122,8 +126,8 @@ def line_uncertainty(
     center = -v01 / v11
     # Of the level at the center, where it is least and independent of the slope.
     level = max(v00 + 2.0 * center * v01 + center * center * v11, i00 - i01 * i01 / i11)
-    effective = max(support, 3.0)
-    factor = sigma * sigma * widen * (effective / max(effective - 3.0, 1.0)) ** 2
+    effective = max(support, _FITTED)
+    factor = sigma * sigma * widen * (effective / max(effective - _FITTED, 1.0)) ** 2
     return LineUncertainty(
         method=method,
         center=center,
@@ -131,7 +135,7 @@ def line_uncertainty(
         slope_variance=v11 * factor,
         effective_n=max(effective / widen, 1.0),
         lag1=lag1,
-        dof=max(0.5 * effective / widen - 1.0, LEAST_DOF),
+        dof=max(_DOF_SHARE * effective / widen - 1.0, LEAST_DOF),
     )
 
 

@@ -11,7 +11,8 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
 from estimators.result import Consensus, Notice, NoticeCode, Uncertainty
-from estimators.trends.units import PLAIN, TimeUnit, moment_text, natural_unit, percent, significant
+from estimators.trends.units import percent, significant
+from estimators.trends.wording import WORDS
 
 if TYPE_CHECKING:
     from estimators.trends.trend import RunnerUp, Trend
@@ -45,14 +46,6 @@ _SIGMA_SOURCES: Mapping[str, str] = {
 }
 
 
-def slope_unit(trend: Trend) -> TimeUnit:
-    """Choose the unit of time in which the slope reads best."""
-    if trend.axis.kind != "datetime":
-        return PLAIN
-    first, last = trend.geometry.span
-    return natural_unit(last - first)
-
-
 def facts(trend: Trend) -> Iterable[tuple[str, str]]:
     """Yield label and sentence of every fact beside the parameters.
 
@@ -77,7 +70,7 @@ def facts(trend: Trend) -> Iterable[tuple[str, str]]:
     yield "Intervals", _uncertainty_sentence(trend.uncertainty, consensus)
     yield "Search", _search_sentence(trend.model, consensus)
     if trend.runner_up is not None:
-        yield "Runner-up", _runner_up_sentence(trend.runner_up, slope_unit(trend), moment_text(trend.origin))
+        yield "Runner-up", _runner_up_sentence(trend, trend.runner_up)
 
 
 def notice_lines(notices: Iterable[Notice]) -> Iterable[tuple[str, str]]:
@@ -145,11 +138,9 @@ def _search_sentence(model: str, consensus: Consensus) -> str:
     return f"{text}; chance that a clean {sample} was among them: {chance}"
 
 
-def _runner_up_sentence(other: RunnerUp, unit: TimeUnit, origin: str) -> str:
-    slope = significant(other.parameters["slope"] * unit.seconds)
-    level = significant(other.parameters["intercept"])
+def _runner_up_sentence(trend: Trend, other: RunnerUp) -> str:
     verdict = "nearly as good" if other.equally_good else "clearly weaker"
     return (
-        f"slope {slope}{unit.per}, level {level} at {origin}: {other.inliers:,} points follow it instead, "
+        f"{WORDS[trend.model].rival(trend, other)}: {other.inliers:,} points follow it instead, "
         f"sigma {significant(other.sigma)}; {verdict}"
     )

@@ -16,7 +16,7 @@ from estimators.inference.intervals import student_quantile
 from estimators.inference.sandwich import LineUncertainty
 from estimators.result import Estimate
 from estimators.series import Series
-from estimators.trends.trend import LineGeometry
+from estimators.trends.curve import LineGeometry
 
 
 @dataclass(frozen=True, slots=True)

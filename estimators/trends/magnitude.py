@@ -50,7 +50,7 @@ def in_value_units(trend: Trend, unit: float) -> Trend:
     unit : float
         From :func:`value_unit`.
     """
-    line, consensus, other = trend.geometry, trend.consensus, trend.runner_up
+    consensus, other = trend.consensus, trend.runner_up
     if other is not None:
         parameters = {name: value * unit for name, value in other.parameters.items()}
         other = dataclasses.replace(other, parameters=parameters, sigma=other.sigma * unit)
@@ -64,14 +64,7 @@ def in_value_units(trend: Trend, unit: float) -> Trend:
         rmse=None if trend.rmse is None else trend.rmse * unit,
         runner_up=other,
         notices=tuple(_notice(item, unit) for item in trend.notices),
-        geometry=dataclasses.replace(
-            line,
-            level=line.level * unit,
-            slope=line.slope * unit,
-            level_stderr=line.level_stderr * unit,
-            slope_stderr=line.slope_stderr * unit,
-            sigma=line.sigma * unit,
-        ),
+        geometry=trend.geometry.in_value_units(unit),
     )
 
 

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+
+from estimators.result import NoFit
+from estimators.trends.line_fit import fit_line
+from estimators.trends.request import Request
+from estimators.trends.trend import Trend
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,6 +25,8 @@ class TrendModel:
     parameters : tuple of str
         Names in the answer.
     summary : str
+    fit : callable
+        From a :class:`~estimators.trends.request.Request` to the answer.
     """
 
     name: str
@@ -27,6 +34,7 @@ class TrendModel:
     equation: str
     parameters: tuple[str, ...]
     summary: str
+    fit: Callable[[Request], Trend | NoFit]
 
 
 _ROWS = (
@@ -36,6 +44,7 @@ _ROWS = (
         "y = intercept + slope * (t - origin)",
         ("slope", "intercept"),
         "A constant rate of change.",
+        fit_line,
     ),
 )
 

@@ -161,8 +161,7 @@ def fitted_values(trend: Trend) -> FloatArray:
     """Evaluate the trend at every input row; NaN where the time is missing or infinite."""
     internal = trend.axis.to_internal(trend.time)
     internal[~np.isfinite(internal)] = np.nan
-    line = trend.geometry
-    return np.asarray(line.level + line.slope * (internal - line.center), dtype=np.float64)
+    return trend.geometry.value(internal)
 
 
 def summary(trend: Trend) -> str:

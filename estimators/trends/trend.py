@@ -26,6 +26,7 @@ from estimators.result import (
 )
 from estimators.time_axis import TimeAxis
 from estimators.trends import presentation
+from estimators.trends.curve import Curve, LineGeometry
 from estimators.trends.unpack import plain_column
 
 if TYPE_CHECKING:
@@ -89,42 +90,16 @@ class RunnerUp:
 
 
 @dataclass(frozen=True, slots=True)
-class LineGeometry:
-    """The fitted line in centred form, from which bands are computed without loss of digits.
-
-    Attributes
-    ----------
-    center : float
-        Time, since ``axis.origin``, at which level and slope are uncorrelated.
-    level, slope : float
-        Value at the center; change per unit of time.
-    level_stderr, slope_stderr : float
-        Standard errors; NaN where unknown.
-    sigma : float
-    span : tuple of float
-        First and last time of the data, since ``axis.origin``.
-    """
-
-    center: float
-    level: float
-    slope: float
-    level_stderr: float
-    slope_stderr: float
-    sigma: float
-    span: tuple[float, float]
-
-
-@dataclass(frozen=True, slots=True)
 class Trend:
     """A robust trend through a time series.
 
     Attributes
     ----------
     model : str
-        ``"line"``.
+        Name of the shape; see :func:`estimators.models`.
     parameters : mapping of str to Estimate
-        ``"slope"`` per unit of time (per second for points in time) and ``"intercept"``, the value at
-        ``origin``.
+        Of a line ``"slope"`` per unit of time (per second for points in time) and ``"intercept"``, the value
+        at ``origin``.
     origin : float or numpy.datetime64
         Where the intercept is taken: the first time, or 0 for plain numbers.
     points : Points
@@ -141,6 +116,8 @@ class Trend:
     notices : tuple of Notice
     prediction : Prediction or None
         At the times asked for with the fit.
+    geometry : Curve
+        The fitted curve, at times since ``axis.origin``.
     time, values : ndarray
         The caller's series as numbers or datetime64[ns], in input order, for frames and pictures.
     """
@@ -157,7 +134,7 @@ class Trend:
     runner_up: RunnerUp | None
     notices: tuple[Notice, ...]
     axis: TimeAxis
-    geometry: LineGeometry
+    geometry: Curve
     time: np.ndarray[Any, Any] = field(repr=False)
     values: FloatArray = field(repr=False)
     prediction: Prediction | None = None
@@ -193,14 +170,9 @@ class Trend:
         if not 0 < wanted < 1:
             raise InputError("level", "must lie between 0 and 1, both excluded")
         asked, internal = self.axis.read(plain_column(times))
-        line = self.geometry
-        value = line.level + line.slope * (internal - line.center)
-        # hypot: standard errors of tiny values have squares that underflow.
-        stderr = np.hypot(line.level_stderr, line.slope_stderr * (internal - line.center))
-        quantile = student_quantile(wanted, self.uncertainty.dof)
-        half = quantile * stderr
-        wide = quantile * np.hypot(stderr, line.sigma)
-        outside = (internal < line.span[0]) | (internal > line.span[1])
+        curve = self.geometry
+        bands = curve.bands(internal, student_quantile(wanted, self.uncertainty.dof))
+        outside = (internal < curve.span[0]) | (internal > curve.span[1])
         notices = (
             (notice(NoticeCode.extrapolation, times=int(np.count_nonzero(outside))),)
             if np.any(outside)
@@ -208,11 +180,11 @@ class Trend:
         )
         return Prediction(
             time=asked,
-            value=value,
-            confidence_low=value - half,
-            confidence_high=value + half,
-            prediction_low=value - wide,
-            prediction_high=value + wide,
+            value=bands.value,
+            confidence_low=bands.confidence_low,
+            confidence_high=bands.confidence_high,
+            prediction_low=bands.prediction_low,
+            prediction_high=bands.prediction_high,
             level=wanted,
             notices=notices,
         )

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from estimators.trends.trend import Trend
 
 MISSING = "–"
 """What stands where there is nothing to say."""
@@ -61,6 +65,14 @@ def natural_unit(span_s: float) -> TimeUnit:
     'day'
     """
     return next((unit for unit in _UNITS if span_s >= 2 * unit.seconds), SECOND)
+
+
+def slope_unit(trend: Trend) -> TimeUnit:
+    """Choose the unit of time in which the slope reads best."""
+    if trend.axis.kind != "datetime":
+        return PLAIN
+    first, last = trend.geometry.span
+    return natural_unit(last - first)
 
 
 def significant(value: float, digits: int = 4) -> str:

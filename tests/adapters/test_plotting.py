@@ -101,6 +101,11 @@ def test_dollars_in_a_callers_text_stay_dollars() -> None:
     assert "Cost in $, sum of $x_1$" in labels(noisy(), title="Cost in $, sum of $x_1$")
 
 
+@pytest.mark.parametrize("kind", ["svg", "png"])
+def test_letters_that_the_font_lacks_do_not_keep_a_picture_from_being_drawn(kind: Any) -> None:
+    assert render(trend_figure(noisy(), title="温度 \x80"), kind)
+
+
 def test_names_of_the_axes_are_shown_and_escaped() -> None:
     shown = labels(noisy(), time_label="day <1>", value_label="level & more")
     assert "day <1>" in shown

@@ -23,7 +23,7 @@ IMPOSSIBLE = -1e300
 # The exact volume of a posterior would weigh ln s by 2 and ln(S Sxx) by 1/2 (Laplace's approximation with
 # flat priors on level and slope). Smaller weights favour fine structures over broad ones a little; they were
 # chosen on one-sided contamination of 80 %, where the broad line through the cloud competes with its edge.
-_SCALE = 0.6
+_SCALE = 0.5
 _INFORMATION = 0.4
 _SHARE = 0.5
 _HELD = 5.0

@@ -47,9 +47,9 @@ LEVEL_GAIN = 0.03
 """Least gain with which the level of an excursion is followed: slow, so that it means something."""
 TAU_FLOOR = 0.5
 """Least scale of readings about an excursion's level, in noise scales; it may be finer than the line's."""
-SIDE_FLOOR = 3.0
-"""Least scale of one-sided errors, in noise scales (METHODS_TRENDS: "mean >= 3 s")."""
-SEPARATION = 8.0
+SIDE_FLOOR = 5.0
+"""Least scale of one-sided errors, in noise scales: a broad line may not call its own tail errors."""
+SEPARATION = 11.0
 """Scale on which the density of one-sided errors rises from 0 at the line, in noise scales.
 
 Errors stand apart from the noise; this is the dial that tells the edge of a one-sided cloud from its middle.

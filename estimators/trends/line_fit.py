@@ -1,0 +1,164 @@
+"""The straight line, fitted: frame, settle the scale, search, infer, label, and say what was seen."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+
+from estimators.arrays import LARGEST_VALUE
+from estimators.consensus.found import LinearData, LineData, Scale
+from estimators.consensus.presets import PRESETS, Preset
+from estimators.inference.intervals import two_sided_p
+from estimators.inference.probability import inlier_probability
+from estimators.inference.sandwich import LineUncertainty, line_uncertainty
+from estimators.noise.resolution import Quantisation, find_quantisation, scale_floor
+from estimators.options import RobustOptions
+from estimators.regression.influence import INLIERS, influence_sums
+from estimators.result import Consensus, NoFit, NoFitReason, Uncertainty
+from estimators.series import Series
+from estimators.trends.labels import label_rows
+from estimators.trends.line import Frame, line_geometry, line_parameters
+from estimators.trends.observations import Evidence, collect_notices
+from estimators.trends.quality import fit_quality
+from estimators.trends.request import Request, no_fit
+from estimators.trends.runner_up import find_runner_up
+from estimators.trends.trend import Trend
+
+_LEAST_FLOOR = float(np.finfo(np.float64).eps) / LARGEST_VALUE
+"""Resolution of the smallest values that are fitted as they are; reached where all values are 0."""
+
+
+def fit_line(request: Request) -> Trend | NoFit:
+    """Fit a straight line.
+
+    Parameters
+    ----------
+    request : Request
+
+    Returns
+    -------
+    Trend or NoFit
+    """
+    series, preset, options, seed = request.series, request.preset, request.options, request.seed
+    refused = _refuse(series)
+    if refused is not None:
+        return refused
+    frame = Frame.of(series.t)
+    data = LineData(frame.apply(series.t), series.y, series.weights)
+    quantisation = find_quantisation(series.y, series.t)
+    scale = settle_scale(data, preset, request.threshold, request.sigma, quantisation, options)
+    if isinstance(scale, NoFit):
+        return no_fit(scale.reason, scale.message, series)
+    found = preset.search.run(data, scale, options, seed)
+    if isinstance(found, NoFit):
+        return no_fit(found.reason, found.message, series)
+    root = None if series.weights is None else np.sqrt(series.weights)
+    sums = found.sums
+    if sums is None:
+        sums = influence_sums(data.t, data.y, found.residual, root, found.sigma, found.threshold, found.loss)
+    spread = line_uncertainty(
+        sums,
+        series.n,
+        found.sigma,
+        found.spread,
+        correct_serial_correlation=options.correct_serial_correlation,
+    )
+    geometry = line_geometry(found.theta, frame, spread, found.sigma, series)
+    dof = None if spread is None else spread.dof
+    origin, intercept_at = origin_of(series)
+    parameters = line_parameters(geometry, intercept_at, request.level, dof)
+    probability = found.probability
+    if probability is None:
+        probability = inlier_probability(found.residual, root, max(found.sigma, scale.floor))
+    inliers = int(sums[INLIERS])
+    r2, rmse = fit_quality(sums)
+    runner_up = find_runner_up(data, found, preset, scale, options, seed, frame, intercept_at)
+    evidence = Evidence(series, preset, found, inliers, spread, quantisation, scale.floor, rmse, runner_up)
+    return Trend(
+        model="line",
+        parameters=parameters,
+        origin=origin,
+        points=label_rows(series, found.inlier, probability, found.residual),
+        consensus=Consensus(
+            method=preset.name,
+            n=series.n,
+            inliers=inliers,
+            inlier_ratio=inliers / series.n,
+            threshold=found.threshold,
+            threshold_source=found.threshold_source,
+            sigma=found.sigma,
+            sigma_source=found.sigma_source,
+            ledger=found.ledger,
+            sampling_probability=found.sampling_probability,
+            search=found.search,
+            seed=seed,
+        ),
+        uncertainty=_describe(spread, request.level),
+        p_value=two_sided_p(_statistic(geometry.slope, geometry.slope_stderr), dof),
+        r2=r2,
+        rmse=rmse,
+        runner_up=runner_up,
+        notices=collect_notices(evidence),
+        axis=series.axis,
+        geometry=geometry,
+        time=series.input_time,
+        values=series.input_values,
+    )
+
+
+def settle_scale(
+    data: LinearData,
+    preset: Preset,
+    threshold: float | None,
+    sigma: float | None,
+    quantisation: Quantisation,
+    options: RobustOptions,
+) -> Scale | NoFit:
+    """Collect what is known of the noise before the search; a pilot finds what the method needs."""
+    floor = max(scale_floor(data.y, quantisation), _LEAST_FLOOR)
+    if sigma is not None:
+        floor = min(floor, sigma)
+    given = Scale(sigma, "given", threshold, "given", floor)
+    if threshold is not None or not preset.search.needs_threshold:
+        return given
+    if sigma is not None:
+        return dataclasses.replace(
+            given, threshold=options.threshold_sigmas * sigma, threshold_source="sigma"
+        )
+    pilot = PRESETS["auto"].search.run(data, given, options, 0)
+    if isinstance(pilot, NoFit):
+        return pilot
+    least = max(pilot.sigma, floor)
+    return Scale(least, pilot.sigma_source, options.threshold_sigmas * least, "sigma", floor)
+
+
+def origin_of(series: Series) -> tuple[float | np.datetime64, float]:
+    """Time at which the intercept is taken: the caller's and the internal one."""
+    first = series.axis.origin
+    return (first, 0.0) if isinstance(first, np.datetime64) else (0.0, -float(first))
+
+
+def _statistic(slope: float, stderr: float) -> float:
+    """Slope in standard errors; a level line without noise has none to show."""
+    if stderr == 0.0:
+        return math.copysign(math.inf, slope) if slope else 0.0
+    return slope / stderr
+
+
+def _describe(spread: LineUncertainty | None, level: float) -> Uncertainty:
+    if spread is None:
+        return Uncertainty("none", level, None, None, None)
+    return Uncertainty(spread.method, level, spread.effective_n, spread.lag1, spread.dof)
+
+
+def _refuse(series: Series) -> NoFit | None:
+    """Series through which no line can be drawn."""
+    if series.n < 2:
+        reason, message = NoFitReason.too_few_points, "One usable point; a line needs at least two."
+    elif series.t[0] == series.t[-1]:
+        reason, message = NoFitReason.constant_time, "All times are equal; a line needs two different times."
+    else:
+        return None
+    return no_fit(reason, message, series)
