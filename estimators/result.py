@@ -104,6 +104,29 @@ class Estimate:
     low: float | None
     high: float | None
 
+    def scaled(self, factor: float) -> Estimate:
+        """State the same estimate in another unit.
+
+        Parameters
+        ----------
+        factor : float
+            Positive; by which every number is multiplied.
+
+        Returns
+        -------
+        Estimate
+
+        Examples
+        --------
+        >>> Estimate(2.0, 0.5, 1.0, 3.0).scaled(10.0)
+        Estimate(value=20.0, stderr=5.0, low=10.0, high=30.0)
+        """
+
+        def times(number: float | None) -> float | None:
+            return None if number is None else number * factor
+
+        return Estimate(self.value * factor, times(self.stderr), times(self.low), times(self.high))
+
 
 @dataclass(frozen=True, slots=True)
 class Points:

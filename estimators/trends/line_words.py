@@ -12,7 +12,7 @@ from estimators.result import Estimate
 from estimators.time_axis import TimeAxis
 from estimators.trends.curve import LineGeometry
 from estimators.trends.units import SECOND, moment_text, p_value_text, rounded, significant, slope_unit
-from estimators.trends.words import EstimateLine, estimate_line, scaled
+from estimators.trends.words import EstimateLine, estimate_line
 
 if TYPE_CHECKING:
     from estimators.trends.trend import RunnerUp, Trend
@@ -24,7 +24,7 @@ class LineWords:
     def equation(self, trend: Trend, time_name: str, value_name: str) -> str:
         """Equation in the unit of time that suits the span."""
         unit = slope_unit(trend)
-        slope = scaled(trend.parameters["slope"], unit.seconds)
+        slope = trend.parameters["slope"].scaled(unit.seconds)
         intercept = trend.parameters["intercept"]
         change = f"{'-' if slope.value < 0 else '+'} {rounded(abs(slope.value), slope.stderr)}"
         amid = _level_amid(trend)
@@ -41,7 +41,7 @@ class LineWords:
         """Slope in the unit that suits the span, and the level where it says something."""
         unit = slope_unit(trend)
         slope = trend.parameters["slope"]
-        yield estimate_line(f"slope{unit.per}", scaled(slope, unit.seconds), p_value_text(trend.p_value))
+        yield estimate_line(f"slope{unit.per}", slope.scaled(unit.seconds), p_value_text(trend.p_value))
         if unit.name and unit != SECOND:
             yield estimate_line("slope per second", slope)
         where = moment_text(trend.origin)

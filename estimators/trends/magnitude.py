@@ -9,7 +9,7 @@ import dataclasses
 import math
 
 from estimators.arrays import LARGEST_VALUE, FloatArray
-from estimators.result import Estimate, Notice
+from estimators.result import Notice
 from estimators.trends.trend import Trend
 
 _IN_UNITS_OF_THE_VALUES = frozenset({"sigma", "quantum", "slope", "intercept"})
@@ -56,7 +56,7 @@ def in_value_units(trend: Trend, unit: float) -> Trend:
         other = dataclasses.replace(other, parameters=parameters, sigma=other.sigma * unit)
     return dataclasses.replace(
         trend,
-        parameters={name: _estimate(value, unit) for name, value in trend.parameters.items()},
+        parameters={name: value.scaled(unit) for name, value in trend.parameters.items()},
         points=dataclasses.replace(trend.points, residual=trend.points.residual * unit),
         consensus=dataclasses.replace(
             consensus, threshold=consensus.threshold * unit, sigma=consensus.sigma * unit
@@ -66,12 +66,6 @@ def in_value_units(trend: Trend, unit: float) -> Trend:
         notices=tuple(_notice(item, unit) for item in trend.notices),
         geometry=trend.geometry.in_value_units(unit),
     )
-
-
-def _estimate(estimate: Estimate, unit: float) -> Estimate:
-    if estimate.stderr is None or estimate.low is None or estimate.high is None:
-        return Estimate(estimate.value * unit, None, None, None)
-    return Estimate(estimate.value * unit, estimate.stderr * unit, estimate.low * unit, estimate.high * unit)
 
 
 def _notice(item: Notice, unit: float) -> Notice:

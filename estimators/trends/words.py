@@ -64,17 +64,3 @@ def interval_text(low: float | None, high: float | None, scale: float | None) ->
     if low is None or high is None or not (math.isfinite(low) and math.isfinite(high)):
         return MISSING
     return f"[{rounded(low, scale)}, {rounded(high, scale)}]"
-
-
-def scaled(estimate: Estimate, factor: float) -> Estimate:
-    """Estimate in another unit."""
-
-    def times(value: float | None) -> float | None:
-        return None if value is None else value * factor
-
-    return Estimate(
-        value=estimate.value * factor,
-        stderr=times(estimate.stderr),
-        low=times(estimate.low),
-        high=times(estimate.high),
-    )
