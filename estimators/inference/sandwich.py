@@ -88,8 +88,8 @@ def line_uncertainty(
     Notes
     -----
     The variance is the larger of the sandwich and s^2 A^-1 (METHODS_TRENDS: "Interval"). With S effective
-    inliers it is multiplied by (S / (S - 4))^2, the first-order correction for the leverage that two
-    coefficients and a scale have on their own residuals, and Student's t takes 0.4 S / f - 1 degrees of
+    inliers it is multiplied by (S / (S - 4))^2, for the leverage that two coefficients, a scale and the
+    choice of inliers have on their own residuals, and Student's t takes 0.4 S / f - 1 degrees of
     freedom: the scale of few points, told from outliers by the same points, is itself uncertain. Both were
     chosen by the coverage of 20 to 50 inliers (``benchmarks``).
     """

@@ -116,7 +116,23 @@ def settle_scale(
     quantisation: Quantisation,
     options: RobustOptions,
 ) -> Scale | NoFit:
-    """Collect what is known of the noise before the search; a pilot finds what the method needs."""
+    """Collect what is known of the noise before the search; a pilot finds what the method needs.
+
+    Parameters
+    ----------
+    data : LinearData
+    preset : Preset
+    threshold, sigma : float or None
+        As given, in units of ``data.y``.
+    quantisation : Quantisation
+        Of the values; the scale does not fall below what it allows.
+    options : RobustOptions
+
+    Returns
+    -------
+    Scale or NoFit
+        ``NoFit`` where the pilot, ``auto``, finds none.
+    """
     floor = max(scale_floor(data.y, quantisation), _LEAST_FLOOR)
     if sigma is not None:
         floor = min(floor, sigma)
@@ -135,7 +151,19 @@ def settle_scale(
 
 
 def origin_of(series: Series) -> tuple[float | np.datetime64, float]:
-    """Time at which the intercept is taken: the caller's and the internal one."""
+    """Time at which the intercept is taken.
+
+    Parameters
+    ----------
+    series : Series
+
+    Returns
+    -------
+    origin : float or numpy.datetime64
+        In the caller's times: the first of points in time, 0 of plain numbers.
+    internal : float
+        The same, since ``series.axis.origin``.
+    """
     first = series.axis.origin
     return (first, 0.0) if isinstance(first, np.datetime64) else (0.0, -float(first))
 

@@ -22,11 +22,10 @@ from estimators.result import (
     Points,
     Uncertainty,
     notice,
-    notice_to_dict,
 )
 from estimators.time_axis import TimeAxis
 from estimators.trends import presentation
-from estimators.trends.curve import Curve, LineGeometry
+from estimators.trends.curve import Curve
 from estimators.trends.unpack import plain_column
 
 if TYPE_CHECKING:
@@ -233,6 +232,3 @@ class Trend:
 
     def _repr_html_(self) -> str:
         return presentation.to_html(self)
-
-
-__all__ = ["LineGeometry", "Prediction", "RunnerUp", "Trend", "notice_to_dict"]

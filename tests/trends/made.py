@@ -10,7 +10,8 @@ from estimators.arrays import Reason
 from estimators.inference.intervals import student_quantile
 from estimators.result import Consensus, Estimate, Ledger, Notice, Points, Uncertainty
 from estimators.time_axis import TimeAxis
-from estimators.trends.trend import LineGeometry, RunnerUp, Trend
+from estimators.trends.curve import LineGeometry
+from estimators.trends.trend import RunnerUp, Trend
 
 
 def made_trend(
