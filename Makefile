@@ -7,6 +7,10 @@ HOST =
 PORT =
 PYTHON =
 PYTEST_ARGS =
+IMAGE = plumbline
+BASE =
+ENGINE =
+IMAGE_ARGS =
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -15,7 +19,7 @@ PIP_INSTALL := $(BIN)/python -m pip install --disable-pip-version-check -c const
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .SUFFIXES:
-.PHONY: help serve test lint format bench openapi docs figures constraints clean distclean
+.PHONY: help serve test lint format bench openapi docs figures constraints image clean distclean
 
 help: ## list the commands
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' Makefile
@@ -25,7 +29,7 @@ serve: $(VENV)/.installed-service ## install what is missing, compile the kernel
 
 test: lint ## install what the tests need and run all of them
 	$(BIN)/plumbline warm
-	$(BIN)/python -m pytest -n auto $(PYTEST_ARGS)
+	$(BIN)/python -m pytest -n auto --dist loadgroup $(PYTEST_ARGS)
 
 lint: $(VENV)/.installed-all ## static checks: ruff, mypy --strict, import contracts
 	$(BIN)/ruff check .
@@ -51,6 +55,17 @@ figures: $(VENV)/.installed-all ## draw the pictures of the documentation
 
 constraints: $(VENV)/.installed-all ## pin the versions that are installed now
 	$(BIN)/python -m tests.project.closure --write
+
+# Images in the OCI format hold no health check; docker writes its own format and knows no other.
+image: ## build the container image `plumbline` with docker, podman or buildah
+	@for engine in $(if $(ENGINE),"$(ENGINE)",docker podman buildah); do \
+	  if command -v "$$engine" >/dev/null; then \
+	    if [ "$$engine" != docker ]; then format="--format=docker"; else format=; fi; \
+	    exec "$$engine" build $$format $(if $(BASE),--build-arg BASE="$(BASE)") $(IMAGE_ARGS) -t "$(IMAGE)" .; \
+	  fi; \
+	done; \
+	echo "No docker, podman or buildah was found to build the image with." >&2; \
+	exit 1
 
 clean: ## remove caches, compiled kernels among them
 	find . -name __pycache__ -type d -not -path './$(VENV)/*' -prune -exec rm -rf {} +

@@ -7,11 +7,18 @@ from estimators.arrays import InputError
 from estimators.consensus.presets import PRESETS, Preset
 from estimators.options import RobustOptions
 from estimators.result import Estimate, NoFit, NoFitReason, Notice, NoticeCode
+from estimators.trends.comparison import Difference
+from estimators.trends.crossing import Crossing
 from estimators.trends.fit import fit_trend
+from estimators.trends.many import fit_trends
 from estimators.trends.models import MODELS, TrendModel
+from estimators.trends.regime import Regime
+from estimators.trends.table import TrendTable
 from estimators.trends.trend import Prediction, Trend
 
 __all__ = [
+    "Crossing",
+    "Difference",
     "Estimate",
     "InputError",
     "NoFit",
@@ -20,11 +27,14 @@ __all__ = [
     "NoticeCode",
     "Prediction",
     "Preset",
+    "Regime",
     "RobustOptions",
     "Trend",
     "TrendModel",
+    "TrendTable",
     "__version__",
     "fit_trend",
+    "fit_trends",
     "methods",
     "models",
 ]

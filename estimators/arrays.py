@@ -48,6 +48,7 @@ class Reason(IntEnum):
     invalid = 3
     duplicate = 4
     zero_weight = 5
+    earlier_regime = 6
 
 
 def as_vector(values: ArrayLike, field: str) -> FloatArray:

@@ -6,7 +6,9 @@ compiled (or read from the cache) at its first call or by :func:`warm`, and refu
 
 Numba stamps a cached kernel with the content of the one file it stands in, so that editing a device
 function in another file would leave a stale kernel behind. Here the stamp is the content of that file
-and of all it imports from the package, and the cache may live on a read-only disk.
+and of all it imports from the package, and the cache may live on a read-only disk. A process that
+imported a file before it was edited runs the old text, and must not cache it under the new stamp: it
+compiles for itself alone.
 """
 
 from __future__ import annotations
@@ -16,6 +18,7 @@ import hashlib
 import os
 import re
 import threading
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, Generic, ParamSpec, TypeVar, cast
@@ -28,6 +31,7 @@ R = TypeVar("R")
 
 _PACKAGE = Path(__file__).resolve().parent
 _REGISTRY: list[Kernel[..., Any]] = []
+_STARTED_NS = time.time_ns()
 
 
 def cache_directory() -> Path:
@@ -55,6 +59,20 @@ _IMPORT = re.compile(r"^from (estimators[\w.]*) import (\([^)]*\)|.*)", re.MULTI
 @functools.cache
 def source_stamp(path: Path) -> str:
     """Digest of a source file and of everything of the package that it imports, directly or not."""
+    digest = hashlib.sha256()
+    for source in _sources(path):
+        digest.update(str(source.relative_to(_PACKAGE)).encode())
+        digest.update(source.read_bytes())
+    return digest.hexdigest()
+
+
+def edited_since_start(path: Path) -> bool:
+    """Whether a source file, or one that it imports, was written after this process began to import."""
+    return any(source.stat().st_mtime_ns > _STARTED_NS for source in _sources(path))
+
+
+@functools.cache
+def _sources(path: Path) -> tuple[Path, ...]:
     seen: set[Path] = set()
     pending = [path]
     while pending:
@@ -62,11 +80,7 @@ def source_stamp(path: Path) -> str:
         if source not in seen:
             seen.add(source)
             pending.extend(_imported(source))
-    digest = hashlib.sha256()
-    for source in sorted(seen):
-        digest.update(str(source.relative_to(_PACKAGE)).encode())
-        digest.update(source.read_bytes())
-    return digest.hexdigest()
+    return tuple(sorted(seen))
 
 
 @functools.cache
@@ -146,8 +160,9 @@ class Kernel(Generic[P, R]):
         with self._loading:
             if self._compiled is None:
                 dispatcher = self._dispatcher
+                stale = edited_since_start(Path(dispatcher.py_func.__code__.co_filename).resolve())
                 try:
-                    dispatcher._cache = cast("Any", _Cache)(dispatcher.py_func)
+                    dispatcher._cache = NullCache() if stale else cast("Any", _Cache)(dispatcher.py_func)
                     dispatcher.compile(self._signature)
                 except OSError:
                     # A cache that can be neither written nor read must not keep anybody from an answer.

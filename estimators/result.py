@@ -39,6 +39,10 @@ class NoticeCode(StrEnum):
     float_nanoseconds = "float_nanoseconds"
     extrapolation = "extrapolation"
     not_robust = "not_robust"
+    earlier_regimes = "earlier_regimes"
+    nonpositive_values = "nonpositive_values"
+    undetermined_noise = "undetermined_noise"
+    rate_near_zero = "rate_near_zero"
 
 
 NOTICE_MEANINGS: Mapping[NoticeCode, str] = {
@@ -62,6 +66,18 @@ NOTICE_MEANINGS: Mapping[NoticeCode, str] = {
     NoticeCode.float_nanoseconds: "Epoch nanoseconds as floats are 256 ns apart; send integers or datetimes.",
     NoticeCode.extrapolation: "Some predictions lie outside the time span of the data.",
     NoticeCode.not_robust: "This method is offered for comparison; outliers can move it.",
+    NoticeCode.earlier_regimes: (
+        "The series followed other lines before; the trend is that of the present regime."
+    ),
+    NoticeCode.nonpositive_values: (
+        "Values of 0 or of the other sign cannot occur under multiplicative noise; they are left out."
+    ),
+    NoticeCode.undetermined_noise: (
+        "The data tell neither multiplicative from additive noise; both answers are reported."
+    ),
+    NoticeCode.rate_near_zero: (
+        "The interval of the rate holds 0; a doubling or halving time has no upper limit."
+    ),
 }
 
 
@@ -234,7 +250,8 @@ class Uncertainty:
     Attributes
     ----------
     method : str
-        ``"effective-n"``, ``"sandwich"``, ``"jackknife"`` or ``"none"`` (nothing left to estimate it from).
+        ``"effective-n"``, ``"hac"``, ``"bootstrap"``, ``"permutation"``, ``"sandwich"``, ``"jackknife"`` or
+        ``"none"`` (nothing left to estimate it from).
     level : float
         Confidence level of every interval in the answer.
     effective_n : float or None
@@ -243,6 +260,12 @@ class Uncertainty:
         Bias-corrected lag-1 correlation of the residuals' scores.
     dof : float or None
         Degrees of freedom of Student's t.
+    resamples : int or None
+        Series that were fitted again, where the method does that.
+    block : int or None
+        Neighbouring points that were drawn together.
+    stability : float or None
+        Share of resampled series in which the procedure found the same structure again.
     """
 
     method: str
@@ -250,6 +273,9 @@ class Uncertainty:
     effective_n: float | None
     lag1: float | None
     dof: float | None
+    resamples: int | None = None
+    block: int | None = None
+    stability: float | None = None
 
 
 class NoFitReason(StrEnum):
@@ -260,6 +286,7 @@ class NoFitReason(StrEnum):
     constant_time = "constant_time"
     no_consensus = "no_consensus"
     too_large = "too_large"
+    invalid_input = "invalid_input"
 
 
 @dataclass(frozen=True, slots=True)

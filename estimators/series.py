@@ -27,7 +27,7 @@ from estimators.arrays import (
 from estimators.kernels import kernel, ro
 from estimators.time_axis import TimeAxis, as_times
 
-_EPOCH_NANOSECONDS = 1e17
+EPOCH_NANOSECONDS = 1e17
 """Plain float times beyond this (1973 in nanoseconds) are nanoseconds, and 16 ns or more apart."""
 
 
@@ -148,7 +148,7 @@ def as_series(t: ArrayLike, y: ArrayLike, weights: ArrayLike | None = None) -> S
         axis=axis,
         was_sorted=was_sorted,
         duplicate_times=duplicate_times,
-        float_nanoseconds=isinstance(axis.origin, float) and axis.origin > _EPOCH_NANOSECONDS,
+        float_nanoseconds=isinstance(axis.origin, float) and axis.origin > EPOCH_NANOSECONDS,
         input_time=input_time,
         input_values=values,
     )

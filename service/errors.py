@@ -64,6 +64,12 @@ class ProblemType(Enum):
         "The series has too many rows",
         "Send fewer rows; an operator can raise PLUMBLINE_MAX_POINTS.",
     )
+    too_many_series = (
+        "too-many-series",
+        413,
+        "The batch has too many series",
+        "Send the series in several batches; an operator can raise PLUMBLINE_MAX_SERIES.",
+    )
     unsupported_media_type = (
         "unsupported-media-type",
         415,

@@ -18,7 +18,7 @@ from starlette.middleware.cors import CORSMiddleware
 from starlette.requests import ClientDisconnect
 
 from service.admission import Admission, BodyBudget, LimitBodies
-from service.api import catalogue, docs, health, trends
+from service.api import batch, catalogue, docs, health, trends
 from service.codecs.arguments import from_validation
 from service.compute import Compute, Warmth
 from service.errors import Problem, ProblemType
@@ -94,7 +94,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     )
     app.state.settings = settings
     app.state.metrics = metrics
-    for part in (trends, catalogue, health, docs):
+    app.state.admission = admission
+    for part in (trends, batch, catalogue, health, docs):
         app.include_router(part.router)
     _answer_errors(app)
     document = describe(app)

@@ -45,7 +45,9 @@ class Settings(BaseSettings):
     body_seconds : float
         Longest time a body may take to arrive (default 30).
     max_points : int
-        Most rows of a series, and most times of a prediction (default 1 000 000).
+        Most rows of a series or a batch, and most times of a prediction (default 1 000 000).
+    max_series : int
+        Most series of a batch (default 100 000).
     workers : int
         Fits that run at one time (default: one per processor).
     queue_length : int
@@ -81,6 +83,7 @@ class Settings(BaseSettings):
     max_buffered_bytes: Annotated[int, Field(ge=1_024, le=2**40)] = 256 * 2**20
     body_seconds: Annotated[float, Field(gt=0, le=3_600, allow_inf_nan=False)] = 30.0
     max_points: Annotated[int, Field(ge=1, le=10**8)] = 1_000_000
+    max_series: Annotated[int, Field(ge=1, le=10**8)] = 100_000
     workers: Annotated[int, Field(ge=1, le=1_024)] = Field(default_factory=lambda: os.cpu_count() or 1)
     queue_length: Annotated[int, Field(ge=0, le=100_000)] = 64
     queue_seconds: Annotated[float, Field(ge=0, le=3_600, allow_inf_nan=False)] = 5.0

@@ -127,7 +127,7 @@ class Sheet:
         drawn = np.isfinite(internal) & np.isfinite(trend.values)
         codes = trend.points.reason_codes[drawn]
         inlier = trend.points.inlier[drawn]
-        unused = ~inlier & (codes == Reason.zero_weight)
+        unused = ~inlier & ((codes == Reason.zero_weight) | (codes == Reason.earlier_regime))
         y = trend.values[drawn]
         probability = trend.points.probability[drawn]
         grid = _time_grid(trend)

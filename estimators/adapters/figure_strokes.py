@@ -10,14 +10,14 @@ from matplotlib.lines import Line2D
 
 from estimators.adapters.figure_sheet import Sheet, mdates
 from estimators.adapters.thinning import one_per_cell
-from estimators.arrays import IntArray
+from estimators.arrays import FloatArray, IntArray
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from estimators.trends.trend import Trend
+    from estimators.trends.trend import RunnerUp, Trend
 
 # More markers than this are thinned, and are an image inside an SVG.
 MAX_MARKERS = 3_000
@@ -28,11 +28,11 @@ _DOTS = (0, (1, 1.8))
 
 
 def draw_points(axes: Axes, sheet: Sheet) -> list[Artist]:
-    """Inliers as discs, outliers as crosses, weight 0 as grey dots; paler where the label is less sure."""
+    """Inliers as discs, outliers as crosses, the rest as grey dots; paler where the label is less sure."""
     palette = sheet.palette
     visible = (sheet.y >= sheet.low) & (sheet.y <= sheet.high)
     kinds = (
-        (sheet.unused, ".", palette.quiet, "weight 0", 1.8),
+        (sheet.unused, ".", palette.quiet, "not in the fit", 1.8),
         (sheet.inlier, "o", palette.inlier, "inliers", 2.0),
         (sheet.outlier, "x", palette.outlier, "outliers", 2.5),
     )
@@ -155,14 +155,26 @@ def _draw_runner_up(axes: Axes, trend: Trend, sheet: Sheet) -> list[Artist]:
     other = trend.runner_up
     if other is None or not other.equally_good:
         return []
-    # The intercept holds at the answer's origin: the first time, or 0 for plain numbers.
-    origin = (
-        0.0 if isinstance(trend.origin, np.datetime64) else float(trend.origin) - float(trend.axis.origin)
-    )
-    value = other.parameters["intercept"] + other.parameters["slope"] * (sheet.curves.time - origin)
+    value = _other_curve(trend, other, sheet.curves.time)
+    if value is None:
+        return []
     look: dict[str, Any] = {"color": sheet.palette.other, "linewidth": 1.4, "linestyle": _DOTS}
     axes.plot(sheet.clock.draw(sheet.curves.time), value, zorder=2.8, **look)
     return [_entry(f"runner-up ({other.inliers:,})", **look)]
+
+
+def _other_curve(trend: Trend, other: RunnerUp, internal: FloatArray) -> FloatArray | None:
+    """Runner-up at internal times; None for shapes whose parameters do not say it all."""
+    # The level holds at the answer's origin: the first time, or 0 for the line of plain numbers.
+    origin = (
+        0.0 if isinstance(trend.origin, np.datetime64) else float(trend.origin) - float(trend.axis.origin)
+    )
+    if trend.model == "line":
+        return other.parameters["intercept"] + other.parameters["slope"] * (internal - origin)
+    if trend.model == "exponential":
+        exponent = np.clip(other.parameters["rate"] * (internal - origin), -700.0, 700.0)
+        return np.asarray(other.parameters["level"] * np.exp(exponent))
+    return None
 
 
 def draw_bands(axes: Axes, sheet: Sheet) -> list[Artist]:

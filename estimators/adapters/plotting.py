@@ -10,7 +10,7 @@ from __future__ import annotations
 import io
 import threading
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Literal
 
@@ -29,6 +29,7 @@ from estimators.adapters.figure_strokes import (
 )
 from estimators.arrays import InputError
 from estimators.trends.units import rounded, slope_unit
+from estimators.trends.wording import WORDS
 
 if TYPE_CHECKING:
     from estimators.trends.trend import Trend
@@ -150,11 +151,19 @@ def _settings() -> Iterator[None]:
         yield
 
 
+_HEADLINES: Mapping[str, tuple[str, str]] = {"line": ("slope", "Slope"), "exponential": ("rate", "Rate")}
+"""Parameter per unit of time that a picture of a shape announces, and its word; else its equation."""
+
+
 def _headline(trend: Trend) -> str:
     """Say in one line what the picture shows."""
-    slope, unit = trend.parameters["slope"], slope_unit(trend)
+    title = _HEADLINES.get(trend.model)
+    if title is None:
+        return WORDS[trend.model].equation(trend, "t", "y")
+    name, word = title
+    slope, unit = trend.parameters[name], slope_unit(trend)
     stderr = None if slope.stderr is None else slope.stderr * unit.seconds
-    text = f"Slope {rounded(slope.value * unit.seconds, stderr)}{unit.per}"
+    text = f"{word} {rounded(slope.value * unit.seconds, stderr)}{unit.per}"
     if slope.low is None or slope.high is None:
         return text
     low, high = (rounded(limit * unit.seconds, stderr) for limit in (slope.low, slope.high))

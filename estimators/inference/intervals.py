@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from scipy.special import ndtri, stdtr, stdtrit
+
+from estimators.arrays import FloatArray
 
 
 def student_quantile(level: float, dof: float | None) -> float:
@@ -32,6 +35,29 @@ def student_quantile(level: float, dof: float | None) -> float:
     if math.isinf(dof):
         return float(ndtri(upper))
     return float(stdtrit(dof, upper))
+
+
+def student_quantiles(level: float, dof: FloatArray) -> FloatArray:
+    """Quantiles of :func:`student_quantile` for many degrees of freedom, the same to the bit.
+
+    Parameters
+    ----------
+    level : float
+        Between 0 and 1.
+    dof : ndarray of float64, shape (m,)
+        NaN gives NaN.
+
+    Returns
+    -------
+    ndarray of float64, shape (m,)
+
+    Examples
+    --------
+    >>> student_quantiles(0.95, np.array([10.0, np.inf, np.nan])).round(4)
+    array([2.2281, 1.96  ,    nan])
+    """
+    upper = 0.5 * (1.0 + level)
+    return np.where(np.isinf(dof), ndtri(upper), stdtrit(np.where(np.isinf(dof), 1.0, dof), upper))
 
 
 def two_sided_p(statistic: float, dof: float | None) -> float | None:

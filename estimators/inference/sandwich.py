@@ -11,11 +11,27 @@ w the share of inliers, since a removed neighbour carries no correlation along.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from estimators.arrays import FloatArray
 from estimators.regression.group_uncertainty import GroupUncertainty
-from estimators.regression.influence import PSI_SQUARE
+from estimators.regression.influence import (
+    A0,
+    A1,
+    A2,
+    B0,
+    B1,
+    B2,
+    INLIERS,
+    LAGGED,
+    PAIRS,
+    PSI_SQUARE,
+    SUPPORT,
+    W0,
+    W1,
+    W2,
+)
 
 LEAST_PAIRS = 5
 """Neighbouring inliers from which a correlation is estimated."""
@@ -93,27 +109,62 @@ def line_uncertainty(
     freedom: the scale of few points, told from outliers by the same points, is itself uncertain. Both were
     chosen by the coverage of 20 to 50 inliers (``benchmarks``).
     """
-    a0, a1, a2, b0, b1, b2, w0, w1, w2, support, inliers, lagged, pairs, square = (
-        float(value) for value in sums[: PSI_SQUARE + 1]
+    found, center, level, slope, effective, lag1, dof, widen = sandwich(
+        sums[: PSI_SQUARE + 1].tolist(), n, sigma, correct_serial_correlation
     )
-    widen, lag1 = 1.0, 0.0
-    if correct_serial_correlation and pairs >= LEAST_PAIRS and square > 0.0:
-        lag1 = _lag1(lagged / pairs, square / inliers, pairs)
-        widen = 1.0 + 2.0 * (inliers / n) * lag1 / (1.0 - lag1)
-    method = "effective-n" if correct_serial_correlation else "sandwich"
     if own is not None:
         (v00, v01), (_, v11) = own.covariance.tolist()
         center = -v01 / v11 if v11 > 0.0 else 0.0
         level = max(v00 + center * v01, 0.0)
+        support = float(sums[SUPPORT])
         return LineUncertainty(
             "jackknife", center, level * widen, v11 * widen, max(support / widen, 1.0), lag1, own.dof
         )
-    if inliers < 3:
+    if not found:
         return None
+    method = "effective-n" if correct_serial_correlation else "sandwich"
+    return LineUncertainty(method, center, level, slope, effective, lag1, dof)
+
+
+def sandwich(
+    sums: Sequence[float] | FloatArray, n: int, sigma: float, correct: bool
+) -> tuple[bool, float, float, float, float, float, float, float]:
+    """Compute :func:`line_uncertainty` in plain arithmetic, which compiled code runs to the same bits.
+
+    Parameters
+    ----------
+    sums : sequence of float
+        Slots of :mod:`estimators.regression.influence` up to ``PSI_SQUARE``.
+    n : int
+    sigma : float
+    correct : bool
+        Whether to widen by the effective sample size.
+
+    Returns
+    -------
+    tuple
+        Whether there is an uncertainty; center, variances of level and slope, effective number, lag-1
+        correlation, degrees of freedom; the factor that serial correlation widens variances by.
+    """
+    a0, a1, a2 = sums[A0], sums[A1], sums[A2]
+    b0, b1, b2 = sums[B0], sums[B1], sums[B2]
+    w0, w1, w2 = sums[W0], sums[W1], sums[W2]
+    inliers, pairs, square = sums[INLIERS], sums[PAIRS], sums[PSI_SQUARE]
+    widen, lag1 = 1.0, 0.0
+    if correct and pairs >= LEAST_PAIRS and square > 0.0:
+        r1 = (sums[LAGGED] / pairs) / (square / inliers)
+        # Corrected for its bias, (1 + 4 r) / n (METHODS.md 12).
+        r1 += (1.0 + 4.0 * r1) / pairs
+        if r1 > 2.0 / math.sqrt(pairs):
+            # One that is clearly there is raised by half its standard error: the widening 1 / (1 - rho) is
+            # convex, so that its expectation lies above its value at the expected rho.
+            r1 += 0.5 * math.sqrt(max(1.0 - r1 * r1, 0.0) / pairs)
+        lag1 = min(max(r1, 0.0), MOST_CORRELATION)
+        widen = 1.0 + 2.0 * (inliers / n) * lag1 / (1.0 - lag1)
     det = a0 * a2 - a1 * a1
     plain = w0 * w2 - w1 * w1
-    if plain <= 1e-14 * w0 * max(w2, 1e-300):
-        return None
+    if inliers < 3 or plain <= 1e-14 * w0 * max(w2, 1e-300):
+        return False, 0.0, 0.0, 0.0, 0.0, lag1, 0.0, widen
     if a0 < 0.2 * w0 or a2 < 0.2 * w2 or det < 0.05 * plain:
         # Few points and a steep descent of psi: the weights themselves are the safer curvature.
         a0, a1, a2, det = w0, w1, w2, plain
@@ -126,28 +177,8 @@ def line_uncertainty(
     center = -v01 / v11
     # Of the level at the center, where it is least and independent of the slope.
     level = max(v00 + 2.0 * center * v01 + center * center * v11, i00 - i01 * i01 / i11)
-    effective = max(support, _FITTED)
-    factor = sigma * sigma * widen * (effective / max(effective - _FITTED, 1.0)) ** 2
-    return LineUncertainty(
-        method=method,
-        center=center,
-        level_variance=level * factor,
-        slope_variance=v11 * factor,
-        effective_n=max(effective / widen, 1.0),
-        lag1=lag1,
-        dof=max(_DOF_SHARE * effective / widen - 1.0, LEAST_DOF),
-    )
-
-
-def _lag1(product: float, square: float, pairs: float) -> float:
-    """Lag-1 correlation, at most its bound, 0 if negative.
-
-    Corrected for its bias, (1 + 4 r) / n (METHODS.md 12). One that is clearly there is raised by half its
-    standard error: the widening 1 / (1 - rho) is convex, so that its expectation lies above its value at
-    the expected rho.
-    """
-    r1 = product / square
-    r1 += (1.0 + 4.0 * r1) / pairs
-    if r1 > 2.0 / math.sqrt(pairs):
-        r1 += 0.5 * math.sqrt(max(1.0 - r1 * r1, 0.0) / pairs)
-    return min(max(r1, 0.0), MOST_CORRELATION)
+    effective = max(sums[SUPPORT], _FITTED)
+    few = effective / max(effective - _FITTED, 1.0)
+    factor = sigma * sigma * widen * (few * few)
+    dof = max(_DOF_SHARE * effective / widen - 1.0, LEAST_DOF)
+    return True, center, level * factor, v11 * factor, max(effective / widen, 1.0), lag1, dof, widen

@@ -11,6 +11,9 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
 from estimators.result import Consensus, Notice, NoticeCode, Uncertainty
+from estimators.trends.evidence import evidence_sentence
+from estimators.trends.exponential.domain import noise_sentence
+from estimators.trends.question_words import question_facts
 from estimators.trends.units import percent, significant
 from estimators.trends.wording import WORDS
 
@@ -34,6 +37,10 @@ ADVICE: Mapping[NoticeCode, str] = {
     NoticeCode.float_nanoseconds: "The digits lost in reading them as floats do not come back.",
     NoticeCode.extrapolation: "Believe them as far as you expect the trend to continue.",
     NoticeCode.not_robust: "Use method auto for an answer that outliers do not move.",
+    NoticeCode.earlier_regimes: "Nothing to do; regime='all' fits the whole series.",
+    NoticeCode.nonpositive_values: "Give noise='additive' if they are readings like the others.",
+    NoticeCode.undetermined_noise: "Give noise if you know it; the two answers differ little where data are.",
+    NoticeCode.rate_near_zero: "The series is too short or too noisy to tell growth from decay.",
 }
 """What the reader can do about each notice."""
 
@@ -61,6 +68,8 @@ def facts(trend: Trend) -> Iterable[tuple[str, str]]:
     yield "Points", _points_sentence(consensus, trend.points.inlier.size - consensus.n)
     source = _SIGMA_SOURCES.get(consensus.sigma_source, consensus.sigma_source)
     yield "Noise", f"sigma {significant(consensus.sigma)} ({source})"
+    if trend.noise is not None:
+        yield "Domain", noise_sentence(trend.noise)
     within = significant(consensus.threshold)
     yield "Threshold", f"an inlier is within {within} of the trend ({_threshold_source(consensus)})"
     quality = [f"R² {significant(trend.r2)}"] if trend.r2 is not None else []
@@ -68,7 +77,10 @@ def facts(trend: Trend) -> Iterable[tuple[str, str]]:
     if quality:
         yield "On inliers", ", ".join(quality)
     yield "Intervals", _uncertainty_sentence(trend.uncertainty, consensus)
-    yield "Search", _search_sentence(trend.model, consensus)
+    yield "Search", _search_sentence(trend, consensus)
+    if trend.evidence:
+        yield "Model", evidence_sentence(trend.evidence)
+    yield from question_facts(trend)
     if trend.runner_up is not None:
         yield "Runner-up", _runner_up_sentence(trend, trend.runner_up)
 
@@ -114,6 +126,10 @@ def _uncertainty_sentence(uncertainty: Uncertainty, consensus: Consensus) -> str
         return "none: the points leave nothing to estimate them from"
     law = "the normal law" if math.isinf(dof) else f"t with {significant(dof)} degrees of freedom"
     text = f"{100 * uncertainty.level:g} %, {uncertainty.method}, {law}"
+    if uncertainty.resamples is not None:
+        text += f", {uncertainty.resamples} resamples in blocks of {uncertainty.block}"
+    if uncertainty.stability is not None:
+        text += f" of which {percent(uncertainty.stability)} find the same structure"
     if uncertainty.effective_n is None:
         return text
     worth = significant(uncertainty.effective_n)
@@ -121,8 +137,9 @@ def _uncertainty_sentence(uncertainty: Uncertainty, consensus: Consensus) -> str
     return text if uncertainty.lag1 is None else f"{text} (lag-1 correlation {uncertainty.lag1:.2f})"
 
 
-def _search_sentence(model: str, consensus: Consensus) -> str:
-    sample = "pair" if model == "line" else "sample"
+def _search_sentence(trend: Trend, consensus: Consensus) -> str:
+    is_of_pairs = trend.model in ("line", "exponential") and not trend.seasons
+    sample = "pair" if is_of_pairs else "sample"
     drawn = consensus.ledger.drawn
     if consensus.search == "closed":
         return "none: the method draws no samples"

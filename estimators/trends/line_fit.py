@@ -7,9 +7,10 @@ import math
 
 import numpy as np
 
-from estimators.arrays import LARGEST_VALUE
-from estimators.consensus.found import LinearData, LineData, Scale
+from estimators.arrays import LARGEST_VALUE, FloatArray
+from estimators.consensus.found import Found, LinearData, LineData, Scale
 from estimators.consensus.presets import PRESETS, Preset
+from estimators.inference.chance import chance_of_line
 from estimators.inference.intervals import two_sided_p
 from estimators.inference.probability import inlier_probability
 from estimators.inference.sandwich import LineUncertainty, line_uncertainty
@@ -23,10 +24,11 @@ from estimators.trends.line import Frame, line_geometry, line_parameters
 from estimators.trends.observations import Evidence, collect_notices
 from estimators.trends.quality import fit_quality
 from estimators.trends.request import Request, no_fit
+from estimators.trends.resampling import Inferred, LineFit, Refit, infer_line
 from estimators.trends.runner_up import find_runner_up
 from estimators.trends.trend import Trend
 
-_LEAST_FLOOR = float(np.finfo(np.float64).eps) / LARGEST_VALUE
+LEAST_FLOOR = float(np.finfo(np.float64).eps) / LARGEST_VALUE
 """Resolution of the smallest values that are fitted as they are; reached where all values are 0."""
 
 
@@ -58,13 +60,16 @@ def fit_line(request: Request) -> Trend | NoFit:
     sums = found.sums
     if sums is None:
         sums = influence_sums(data.t, data.y, found.residual, root, found.sigma, found.threshold, found.loss)
-    spread = line_uncertainty(
-        sums,
-        series.n,
-        found.sigma,
-        found.spread,
-        correct_serial_correlation=options.correct_serial_correlation,
+    line = LineFit(
+        data=data,
+        found=found,
+        root=root,
+        spread=_spread_of(found, sums, series.n, correct=options.correct_serial_correlation),
+        independent=lambda: _spread_of(found, sums, series.n, correct=False),
+        refit=lambda values: _refit(request, data, values, quantisation),
     )
+    inferred = infer_line(line, request.uncertainty, request.level, options.resamples, seed)
+    spread = inferred.spread
     geometry = line_geometry(found.theta, frame, spread, found.sigma, series)
     dof = None if spread is None else spread.dof
     origin, intercept_at = origin_of(series)
@@ -74,6 +79,11 @@ def fit_line(request: Request) -> Trend | NoFit:
         probability = inlier_probability(found.residual, root, max(found.sigma, scale.floor))
     inliers = int(sums[INLIERS])
     r2, rmse = fit_quality(sums)
+    p_value = inferred.p_value
+    if p_value is None:
+        p_value = two_sided_p(_statistic(geometry.slope, geometry.slope_stderr), dof)
+        if p_value is not None and found.search != "closed":
+            p_value = max(p_value, chance_of_line(series.y, inliers, found.threshold))
     runner_up = find_runner_up(data, found, preset, scale, options, seed, frame, intercept_at)
     evidence = Evidence(series, preset, found, inliers, spread, quantisation, scale.floor, rmse, runner_up)
     return Trend(
@@ -95,8 +105,8 @@ def fit_line(request: Request) -> Trend | NoFit:
             search=found.search,
             seed=seed,
         ),
-        uncertainty=_describe(spread, request.level),
-        p_value=two_sided_p(_statistic(geometry.slope, geometry.slope_stderr), dof),
+        uncertainty=_describe(inferred, request.level),
+        p_value=p_value,
         r2=r2,
         rmse=rmse,
         runner_up=runner_up,
@@ -133,7 +143,7 @@ def settle_scale(
     Scale or NoFit
         ``NoFit`` where the pilot, ``auto``, finds none.
     """
-    floor = max(scale_floor(data.y, quantisation), _LEAST_FLOOR)
+    floor = max(scale_floor(data.y, quantisation), LEAST_FLOOR)
     if sigma is not None:
         floor = min(floor, sigma)
     given = Scale(sigma, "given", threshold, "given", floor)
@@ -175,10 +185,42 @@ def _statistic(slope: float, stderr: float) -> float:
     return slope / stderr
 
 
-def _describe(spread: LineUncertainty | None, level: float) -> Uncertainty:
+def _spread_of(found: Found, sums: FloatArray, n: int, *, correct: bool) -> LineUncertainty | None:
+    return line_uncertainty(sums, n, found.sigma, found.spread, correct_serial_correlation=correct)
+
+
+def _refit(request: Request, data: LineData, values: FloatArray, quantisation: Quantisation) -> Refit | None:
+    """Run the whole procedure on other values at the same times."""
+    again = LineData(data.t, values, data.weights)
+    options = request.options
+    scale = settle_scale(again, request.preset, request.threshold, request.sigma, quantisation, options)
+    if isinstance(scale, NoFit):
+        return None
+    found = request.preset.search.run(again, scale, options, request.seed)
+    if isinstance(found, NoFit):
+        return None
+    sums = found.sums
+    if sums is None:
+        root = None if data.weights is None else np.sqrt(data.weights)
+        sums = influence_sums(data.t, values, found.residual, root, found.sigma, found.threshold, found.loss)
+    spread = _spread_of(found, sums, data.n, correct=options.correct_serial_correlation)
+    return None if spread is None else Refit(found.theta, spread)
+
+
+def _describe(inferred: Inferred, level: float) -> Uncertainty:
+    spread = inferred.spread
     if spread is None:
         return Uncertainty("none", level, None, None, None)
-    return Uncertainty(spread.method, level, spread.effective_n, spread.lag1, spread.dof)
+    return Uncertainty(
+        method=spread.method,
+        level=level,
+        effective_n=spread.effective_n,
+        lag1=spread.lag1,
+        dof=spread.dof,
+        resamples=inferred.resamples,
+        block=inferred.block,
+        stability=inferred.stability,
+    )
 
 
 def _refuse(series: Series) -> NoFit | None:

@@ -12,8 +12,10 @@ from estimators.arrays import LARGEST_VALUE, FloatArray
 from estimators.result import Notice
 from estimators.trends.trend import Trend
 
-_IN_UNITS_OF_THE_VALUES = frozenset({"sigma", "quantum", "slope", "intercept"})
+_IN_UNITS_OF_THE_VALUES = frozenset({"sigma", "quantum", "slope", "intercept", "level"})
 """Numbers in the details of notices that are measured in the values' unit."""
+_FREE_OF_UNITS = frozenset({"rate"})
+"""Parameters that are not."""
 
 
 def value_unit(y: FloatArray) -> float:
@@ -51,20 +53,30 @@ def in_value_units(trend: Trend, unit: float) -> Trend:
         From :func:`value_unit`.
     """
     consensus, other = trend.consensus, trend.runner_up
+    # Noise that is a share of the level is measured in no unit.
+    of_noise = 1.0 if trend.noise is not None and trend.noise.domain == "multiplicative" else unit
     if other is not None:
-        parameters = {name: value * unit for name, value in other.parameters.items()}
-        other = dataclasses.replace(other, parameters=parameters, sigma=other.sigma * unit)
+        parameters = {
+            name: value if name in _FREE_OF_UNITS else value * unit
+            for name, value in other.parameters.items()
+        }
+        other = dataclasses.replace(other, parameters=parameters, sigma=other.sigma * of_noise)
     return dataclasses.replace(
         trend,
-        parameters={name: value.scaled(unit) for name, value in trend.parameters.items()},
-        points=dataclasses.replace(trend.points, residual=trend.points.residual * unit),
+        parameters={
+            name: value if name in _FREE_OF_UNITS or name.endswith("_peak") else value.scaled(unit)
+            for name, value in trend.parameters.items()
+        },
+        points=dataclasses.replace(trend.points, residual=trend.points.residual * of_noise),
         consensus=dataclasses.replace(
-            consensus, threshold=consensus.threshold * unit, sigma=consensus.sigma * unit
+            consensus, threshold=consensus.threshold * of_noise, sigma=consensus.sigma * of_noise
         ),
-        rmse=None if trend.rmse is None else trend.rmse * unit,
+        rmse=None if trend.rmse is None else trend.rmse * of_noise,
         runner_up=other,
         notices=tuple(_notice(item, unit) for item in trend.notices),
         geometry=trend.geometry.in_value_units(unit),
+        regimes=tuple(regime.in_value_units(unit) for regime in trend.regimes),
+        alternative=None if trend.alternative is None else in_value_units(trend.alternative, unit),
     )
 
 

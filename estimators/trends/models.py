@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from estimators.result import NoFit
-from estimators.trends.line_fit import fit_line
+from estimators.trends.bases.fit import fit_constant, fit_linear, fit_straight
+from estimators.trends.choice import fit_auto
+from estimators.trends.exponential.fit import fit_exponential
 from estimators.trends.request import Request
 from estimators.trends.trend import Trend
 
@@ -27,6 +29,10 @@ class TrendModel:
     summary : str
     fit : callable
         From a :class:`~estimators.trends.request.Request` to the answer.
+    any_magnitude : bool
+        Whether ``fit`` itself copes with values whose squares underflow.
+    takes : tuple of str
+        Settings of :class:`~estimators.trends.bases.settings.Basis` that the shape has a use for.
     """
 
     name: str
@@ -35,6 +41,8 @@ class TrendModel:
     parameters: tuple[str, ...]
     summary: str
     fit: Callable[[Request], Trend | NoFit]
+    any_magnitude: bool = False
+    takes: tuple[str, ...] = ()
 
 
 _ROWS = (
@@ -44,7 +52,44 @@ _ROWS = (
         "y = intercept + slope * (t - origin)",
         ("slope", "intercept"),
         "A constant rate of change.",
-        fit_line,
+        fit_straight,
+        takes=("seasonal", "harmonics"),
+    ),
+    TrendModel(
+        "constant",
+        "Level",
+        "y = level",
+        ("level",),
+        "No change at all.",
+        fit_constant,
+        takes=("seasonal", "harmonics"),
+    ),
+    TrendModel(
+        "linear",
+        "Polynomial, seasons and own columns",
+        "y = polynomial(t) + seasons(t) + columns",
+        ("slope", "intercept", "slope_end", "power_2"),
+        "Any sum of terms with a coefficient each.",
+        fit_linear,
+        takes=("degree", "seasonal", "harmonics", "columns"),
+    ),
+    TrendModel(
+        "exponential",
+        "Exponential growth or decay",
+        "y = level * exp(rate * (t - origin))",
+        ("rate", "level"),
+        "A constant rate of growth; whether the noise grows along is told from the data.",
+        fit_exponential,
+        any_magnitude=True,
+    ),
+    TrendModel(
+        "auto",
+        "Told from the data",
+        "that of the model chosen",
+        (),
+        "Level, line, parabola or exponential, as the values say; the evidence is in the answer.",
+        fit_auto,
+        takes=("seasonal", "harmonics"),
     ),
 )
 

@@ -9,6 +9,7 @@ import numpy as np
 from estimators.arrays import FloatArray, Reason
 from estimators.consensus.found import Found
 from estimators.consensus.presets import Preset
+from estimators.inference.columns import ColumnUncertainty
 from estimators.inference.sandwich import LineUncertainty
 from estimators.noise.resolution import Quantisation
 from estimators.result import Notice, NoticeCode, notice
@@ -30,7 +31,7 @@ class Evidence:
     preset: Preset
     found: Found
     inliers: int
-    spread: LineUncertainty | None
+    spread: LineUncertainty | ColumnUncertainty | None
     quantisation: Quantisation
     floor: float
     rmse: float | None
@@ -82,7 +83,9 @@ def collect_notices(seen: Evidence) -> tuple[Notice, ...]:
     if 2 * seen.inliers < n:
         notices.append(notice(NoticeCode.low_inlier_ratio, inlier_ratio=seen.inliers / n))
     drawn = found.sampling_probability
-    if drawn is not None and drawn < LEAST_SAMPLING_PROBABILITY:
+    # For models of many columns, auto starts from robust fits as well and does not rest on its samples.
+    rests_on_samples = seen.preset.search.needs_threshold or not isinstance(seen.spread, ColumnUncertainty)
+    if rests_on_samples and drawn is not None and drawn < LEAST_SAMPLING_PROBABILITY:
         notices.append(notice(NoticeCode.low_sampling_probability, sampling_probability=drawn))
     if seen.spread is not None and seen.spread.lag1 > NOTABLE_CORRELATION:
         notices.append(

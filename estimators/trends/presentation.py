@@ -6,15 +6,18 @@ passed on. Columns are converted as whole arrays: 1e5 points take milliseconds, 
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from estimators.arrays import FloatArray, Reason
-from estimators.result import Estimate, notice_to_dict
-from estimators.trends import layout
+from estimators.result import Estimate, Uncertainty, notice_to_dict
+from estimators.trends import answers, layout
+from estimators.trends.bases.own import columns_at_rows, values_at_rows
 from estimators.trends.report import describe
+from estimators.trends.slopes import slope_per_to_dict
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -74,7 +77,10 @@ def estimate_to_dict(estimate: Estimate) -> dict[str, float | None]:
 
 def origin_to_json(origin: float | np.datetime64) -> float | str:
     """Origin as a number or ISO 8601."""
-    return iso_utc(origin) if isinstance(origin, np.datetime64) else float(origin)
+    if isinstance(origin, np.datetime64):
+        return iso_utc(origin)
+    # A large integer, such as epoch nanoseconds, would lose digits as a float.
+    return int(origin) if isinstance(origin, int) else float(origin)
 
 
 def prediction_to_dict(prediction: Prediction) -> dict[str, Any]:
@@ -97,6 +103,17 @@ def _runner_up_to_dict(runner_up: RunnerUp) -> dict[str, Any]:
         "inliers": runner_up.inliers,
         "sigma": runner_up.sigma,
         "equally_good": runner_up.equally_good,
+    }
+
+
+def _resampling_to_dict(uncertainty: Uncertainty) -> dict[str, Any]:
+    """Keys of methods that fit again; others have nothing to say about it."""
+    if uncertainty.resamples is None:
+        return {}
+    return {
+        "resamples": uncertainty.resamples,
+        "block": uncertainty.block,
+        "stability": uncertainty.stability,
     }
 
 
@@ -140,11 +157,28 @@ def trend_to_dict(trend: Trend, *, points: bool = True) -> dict[str, Any]:
             "effective_n": trend.uncertainty.effective_n,
             "lag1": trend.uncertainty.lag1,
             "dof": trend.uncertainty.dof,
+            **_resampling_to_dict(trend.uncertainty),
         },
         "runner_up": None if trend.runner_up is None else _runner_up_to_dict(trend.runner_up),
         "prediction": None if trend.prediction is None else prediction_to_dict(trend.prediction),
         "notices": [notice_to_dict(item) for item in trend.notices],
     }
+    if trend.noise is not None:
+        noise = trend.noise
+        answer["noise"] = {"domain": noise.domain, "selection": noise.selection, "margin": noise.margin}
+    if trend.derived is not None:
+        answer["derived"] = {name: estimate_to_dict(value) for name, value in trend.derived.items()}
+    if trend.alternative is not None:
+        answer["alternative"] = trend_to_dict(trend.alternative, points=False)
+    answer["slope_per"] = slope_per_to_dict(trend)
+    if trend.regimes:
+        answer["regimes"] = [answers.regime_to_dict(item) for item in trend.regimes]
+    if trend.crossings:
+        answer["crossings"] = [answers.crossing_to_dict(item) for item in trend.crossings]
+    if trend.seasons:
+        answer["seasons"] = [dataclasses.asdict(season) for season in trend.seasons]
+    if trend.evidence:
+        answer["evidence"] = [dataclasses.asdict(item) for item in trend.evidence]
     if points:
         answer["points"] = {
             "time": time_to_json(trend.time),
@@ -161,7 +195,7 @@ def fitted_values(trend: Trend) -> FloatArray:
     """Evaluate the trend at every input row; NaN where the time is missing or infinite."""
     internal = trend.axis.to_internal(trend.time)
     internal[~np.isfinite(internal)] = np.nan
-    return trend.geometry.value(internal)
+    return values_at_rows(trend.geometry, internal)
 
 
 def summary(trend: Trend) -> str:
@@ -197,7 +231,7 @@ def trend_to_frame(trend: Trend) -> pd.DataFrame:
     import pandas as pd  # noqa: PLC0415
 
     known = np.isfinite(trend.axis.to_internal(trend.time))
-    bands = trend.predict(trend.time[known])
+    bands = trend.predict(trend.time[known], columns=columns_at_rows(trend.geometry, known))
 
     def on_known_rows(values: FloatArray) -> FloatArray:
         column = np.full(known.size, np.nan)

@@ -29,7 +29,18 @@ def fit_quality(sums: FloatArray) -> tuple[float | None, float | None]:
     inliers = float(sums[INLIERS])
     if inliers == 0:
         return None, None
-    sse = float(sums[SSE])
-    sst = float(sums[VALUE_SQUARE]) - float(sums[VALUE]) ** 2 / inliers
-    varies = sst > _LEAST_VARIATION * float(sums[VALUE_SQUARE])
-    return (1.0 - sse / sst if varies else None), math.sqrt(sse / inliers)
+    r2, rmse = quality(inliers, float(sums[SSE]), float(sums[VALUE]), float(sums[VALUE_SQUARE]))
+    return (None if math.isnan(r2) else r2), rmse
+
+
+def quality(inliers: float, sse: float, value: float, value_square: float) -> tuple[float, float]:
+    """Compute :func:`fit_quality` in plain arithmetic, which compiled code runs to the same bits.
+
+    Returns
+    -------
+    tuple of float
+        R2, NaN where the inliers do not vary, and root mean square error; there is an inlier at least.
+    """
+    sst = value_square - value * value / inliers
+    r2 = 1.0 - sse / sst if sst > _LEAST_VARIATION * value_square else math.nan
+    return r2, math.sqrt(sse / inliers)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from estimators.consensus.presets import Preset
 from estimators.options import RobustOptions
 from estimators.result import NoFit, NoFitReason
 from estimators.series import Series
+from estimators.trends.bases.settings import Basis
 from estimators.trends.labels import unlabelled_rows
 from estimators.trends.observations import input_notices
 
@@ -26,6 +27,14 @@ class Request:
     level : float
     seed : int
     options : RobustOptions
+    uncertainty : str
+        One of :data:`estimators.trends.resampling.UNCERTAINTIES`.
+    noise : {"auto", "multiplicative", "additive"}
+        Of an exponential; other shapes take no notice of it.
+    basis : Basis
+        Degree, seasons and own columns.
+    regime : {"all", "last"}
+        Whether to fit the whole series or its present regime.
     """
 
     series: Series
@@ -35,6 +44,10 @@ class Request:
     level: float
     seed: int
     options: RobustOptions
+    uncertainty: str = "effective-n"
+    noise: str = "auto"
+    basis: Basis = field(default_factory=Basis)
+    regime: str = "all"
 
 
 def no_fit(reason: NoFitReason, message: str, series: Series) -> NoFit:

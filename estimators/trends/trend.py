@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -24,8 +24,15 @@ from estimators.result import (
     notice,
 )
 from estimators.time_axis import TimeAxis
-from estimators.trends import presentation
+from estimators.trends import comparison, crossing, presentation, slopes
+from estimators.trends.bases.design import Season
+from estimators.trends.bases.own import bands_with_columns
+from estimators.trends.comparison import Difference
+from estimators.trends.crossing import Crossing
 from estimators.trends.curve import Curve
+from estimators.trends.evidence import Evidence
+from estimators.trends.exponential.domain import Noise
+from estimators.trends.regime import Regime
 from estimators.trends.unpack import plain_column
 
 if TYPE_CHECKING:
@@ -119,6 +126,20 @@ class Trend:
         The fitted curve, at times since ``axis.origin``.
     time, values : ndarray
         The caller's series as numbers or datetime64[ns], in input order, for frames and pictures.
+    noise : Noise or None
+        Of an exponential: whether readings scatter by a share of the level or alike at every level.
+    derived : mapping of str to Estimate, or None
+        What follows from the parameters, such as a doubling time; limits at infinity are None.
+    alternative : Trend or None
+        Answer under the other noise, where the data prefer neither.
+    seasons : tuple of Season
+        Fitted together with the trend; their amplitudes and peaks are among the parameters.
+    evidence : tuple of Evidence
+        For each shape that ``model="auto"`` weighed, the best first.
+    regimes : tuple of Regime
+        With ``regime="last"``, the present one last.
+    crossings : tuple of Crossing
+        For the values to reach that were asked for with the fit.
     """
 
     model: str
@@ -137,8 +158,15 @@ class Trend:
     time: np.ndarray[Any, Any] = field(repr=False)
     values: FloatArray = field(repr=False)
     prediction: Prediction | None = None
+    noise: Noise | None = None
+    derived: Mapping[str, Estimate] | None = None
+    alternative: Trend | None = None
+    seasons: tuple[Season, ...] = ()
+    evidence: tuple[Evidence, ...] = ()
+    regimes: tuple[Regime, ...] = ()
+    crossings: tuple[Crossing, ...] = ()
 
-    def predict(self, times: ArrayLike, level: float | None = None) -> Prediction:
+    def predict(self, times: ArrayLike, level: float | None = None, columns: Any = None) -> Prediction:
         """Trend, confidence band and prediction band at given times.
 
         Parameters
@@ -147,6 +175,8 @@ class Trend:
             Of the same kind as the series; points in time may be ISO 8601.
         level : float, optional
             Confidence level; default that of the fit.
+        columns : mapping of str to array_like, or array_like of shape (k,) or (k, m), optional
+            The columns that the trend was fitted with, at these times; default their means.
 
         Returns
         -------
@@ -155,7 +185,8 @@ class Trend:
         Raises
         ------
         InputError
-            If the times are of another kind or too large, or the level is not between 0 and 1.
+            If the times are of another kind or too large, the level is not between 0 and 1, or the columns
+            are not those of the fit.
 
         Examples
         --------
@@ -170,7 +201,11 @@ class Trend:
             raise InputError("level", "must lie between 0 and 1, both excluded")
         asked, internal = self.axis.read(plain_column(times))
         curve = self.geometry
-        bands = curve.bands(internal, student_quantile(wanted, self.uncertainty.dof))
+        quantile = student_quantile(wanted, self.uncertainty.dof)
+        if columns is None:
+            bands = curve.bands(internal, quantile)
+        else:
+            bands = bands_with_columns(curve, internal, quantile, columns)
         outside = (internal < curve.span[0]) | (internal > curve.span[1])
         notices = (
             (notice(NoticeCode.extrapolation, times=int(np.count_nonzero(outside))),)
@@ -187,6 +222,72 @@ class Trend:
             level=wanted,
             notices=notices,
         )
+
+    def time_to(
+        self,
+        value: float,
+        *,
+        horizon: Any = None,
+        direction: Literal["up", "down"] | None = None,
+        level: float | None = None,
+    ) -> Crossing:
+        """When the trend reaches a value, and how sure that is.
+
+        Parameters
+        ----------
+        value : float
+        horizon : time, optional
+            Of the kind of the series, not before its last time: how likely is it that the value is passed
+            by then?
+        direction : {"up", "down"}, optional
+            Whether beyond is above or below (default: the way from the last level to the value, unless the
+            trend has surely come from there).
+        level : float, optional
+            Confidence level; default that of the fit.
+
+        Returns
+        -------
+        Crossing
+
+        Raises
+        ------
+        InputError
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from estimators import fit_trend
+        >>> trend = fit_trend(np.arange(20.0), 3.0 + 2.0 * np.arange(20.0))
+        >>> full = trend.time_to(90.0)
+        >>> full.status, round(full.time, 6)
+        ('crosses', 43.5)
+        """
+        return crossing.time_to(self, value, horizon, direction, level)
+
+    def differs_from(self, other: Trend, level: float | None = None) -> Difference:
+        """Whether the slope differs from that of another trend, of other data (Welch's test).
+
+        Raises
+        ------
+        InputError
+            If one of them has no slope, or their times are of different kinds.
+        """
+        return comparison.differs_from(self, other, level)
+
+    def slope_per(self, unit: str | None = None) -> Estimate:
+        """Slope per ``"second"``, ``"minute"``, ``"hour"``, ``"day"``, ``"week"`` or ``"year"``.
+
+        Parameters
+        ----------
+        unit : str, optional
+            Default: the unit that suits the span; for plain numbers the only one there is.
+
+        Raises
+        ------
+        InputError
+            If there is no such unit, or no slope.
+        """
+        return slopes.slope_per(self, unit)
 
     def summary(self) -> str:
         """Text for people: the trend, its uncertainty, the outliers and the warnings."""

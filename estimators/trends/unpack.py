@@ -18,19 +18,19 @@ def unpack_series(t: ArrayLike, y: ArrayLike | None) -> tuple[Any, Any]:
     Parameters
     ----------
     t : array_like, shape (n,)
-        Times, or a pandas Series whose index is the time.
+        Times, or a pandas Series or DataFrame of one column whose index is the time.
     y : array_like, shape (n,), optional
 
     Raises
     ------
     InputError
-        If there are no values.
+        If there are no values, or several columns of them.
     """
     if y is None:
         if not hasattr(t, "index") or not hasattr(t, "to_numpy"):
             raise InputError("y", "give values, or a pandas Series with its times as the index")
-        return plain_column(t.index), plain_column(t)
-    return plain_column(t), plain_column(y)
+        return plain_column(t.index), plain_column(_only_column(t, "y"))
+    return plain_column(_only_column(t, "t")), plain_column(_only_column(y, "y"))
 
 
 def plain_column(column: Any) -> Any:
@@ -60,3 +60,14 @@ def plain_column(column: Any) -> Any:
     if nullable.kind == "f":
         return converted.to_numpy(dtype=np.float64, na_value=np.nan)
     return converted.to_numpy(dtype=object, na_value=None)
+
+
+def _only_column(column: Any, field: str) -> Any:
+    """Column of a pandas frame that has no other; anything else stays as it is."""
+    if not (hasattr(column, "columns") and hasattr(column, "iloc")):
+        return column
+    names = [repr(name) for name in column.columns]
+    if len(names) != 1:
+        named = f" ({', '.join(names[:5])}{', ...' if len(names) > 5 else ''})" if names else ""
+        raise InputError(field, f"choose one column: the frame has {len(names)}{named}")
+    return column.iloc[:, 0]

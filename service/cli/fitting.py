@@ -22,7 +22,7 @@ from service.cli.tables import show_report
 from service.codecs.csv import write_csv
 from service.codecs.json import dumps, write_json
 from service.codecs.table import Table, TableError, read_delimiter, read_table
-from service.schemas.options import AnswerQuery, TimeUnit
+from service.schemas.options import AnswerQuery, TimeUnit, read_periods
 
 if TYPE_CHECKING:
     from estimators.adapters.plotting import FigureFormat, Theme
@@ -55,6 +55,14 @@ class FitRequest:
     plot: Path | None
     theme: Theme
     output: Literal["text", "json", "csv"]
+    noise: str = "auto"
+    uncertainty: str = "effective-n"
+    degree: int | None = None
+    seasonal: tuple[str, ...] = ()
+    harmonics: int | None = None
+    regime: str = "all"
+    reach: tuple[float, ...] = ()
+    horizon: str | None = None
 
 
 def run_fit(request: FitRequest, *, one_format: bool = True) -> None:
@@ -132,8 +140,10 @@ def _read(request: FitRequest) -> Table:
     if not kept.any():
         raise TableError("no row is left to fit; check the file, --since and --until")
     predict = read_moment_like(columns, list(request.predict), "--predict") if request.predict else None
+    horizon = None if request.horizon is None else read_moment_like(columns, [request.horizon], "--horizon")
     columns = dataclasses.replace(
         columns,
+        horizon=horizon,
         time=columns.time[kept],
         value=columns.value[kept],
         weight=None if columns.weight is None else columns.weight[kept],
@@ -169,6 +179,14 @@ def _fit(request: FitRequest, table: Table) -> Trend | NoFit:
             sigma=request.sigma,
             level=request.level,
             seed=request.seed,
+            uncertainty=request.uncertainty,
+            noise=request.noise,
+            degree=request.degree,
+            seasonal=read_periods(request.seasonal) if request.seasonal else None,
+            harmonics=request.harmonics,
+            regime=request.regime,
+            reach=request.reach or None,
+            horizon=columns.horizon,
             predict=columns.predict,
         )
     except InputError as error:

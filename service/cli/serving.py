@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import socket
 from collections.abc import Callable
 
@@ -39,6 +40,9 @@ def run_server(host: str | None, port: int | None) -> None:
         timeout_graceful_shutdown=round(settings.deadline_seconds) + 1,
     )
     server = _AnnouncingServer(config, lambda: _announce(settings, listener))
+    # The command turned collection off for the start; what is there by now is never garbage.
+    gc.freeze()
+    gc.enable()
     try:
         server.run(sockets=[listener])
     except KeyboardInterrupt:

@@ -65,6 +65,8 @@ class Columns:
     predict : ndarray, shape (k,), or None
         Of the same type as ``time``.
     form : TimeForm
+    horizon : ndarray, shape (1,), or None
+        Time by which values are to be reached, of the same type as ``time``.
     """
 
     time: Times
@@ -72,6 +74,7 @@ class Columns:
     weight: npt.NDArray[np.float64] | None
     predict: Times | None
     form: TimeForm
+    horizon: Times | None = None
 
 
 def from_epoch(

@@ -70,7 +70,12 @@ def read_csv(body: bytes, query: TrendQuery) -> tuple[Columns, FitArguments]:
         predict, asked_form = _times(asked, "predict", arguments.time_unit)
         if asked_form != form:
             raise invalid_value("predict", "must be written in the same form as the time column")
-    return Columns(time, _floats(value_cells, "value"), weight, predict, form), arguments
+    horizon: Times | None = None
+    if query.horizon is not None:
+        horizon, asked_form = _times([query.horizon], "horizon", arguments.time_unit)
+        if asked_form != form:
+            raise invalid_value("horizon", "must be written in the same form as the time column")
+    return Columns(time, _floats(value_cells, "value"), weight, predict, form, horizon), arguments
 
 
 def write_csv(trend: Trend, columns: Columns, _query: AnswerQuery) -> bytes:

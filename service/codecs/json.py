@@ -19,6 +19,7 @@ from estimators import Trend
 from estimators.trends.presentation import fitted_values
 from service.codecs.arguments import read_arguments
 from service.codecs.columns import Columns, TimeForm, Times, from_epoch
+from service.codecs.moments import write_moments
 from service.codecs.times import parse_iso
 from service.errors import FieldError, Problem, ProblemType, invalid_value, unknown_fields
 from service.schemas.options import (
@@ -29,7 +30,7 @@ from service.schemas.options import (
     TrendQuery,
 )
 
-COLUMN_FIELDS = ("time", "value", "weight", "predict")
+COLUMN_FIELDS = ("time", "value", "weight", "predict", "horizon")
 FIELDS = (*COLUMN_FIELDS, *FitArguments.model_fields)
 
 
@@ -53,10 +54,14 @@ _NUMBERS = msgspec.json.Decoder(list[float | None])
 _TIMES = msgspec.json.Decoder(list[int | float | str | None])
 _ANY = msgspec.json.Decoder(Any)
 
+_WANTED = dict.fromkeys(("time", "predict", "horizon"), "a number, ISO 8601 text or null") | {
+    "series": "text or an integer"
+}
+
 _BYTE = re.compile(r"\(byte (\d+)\)")
 _ROW = re.compile(r"\$\[(\d+)\]")
 _NOT_FINITE = re.compile(rb"-?(nan|inf)", re.IGNORECASE)
-_OPEN_COLUMN = re.compile(rb'"(time|value|weight|predict)"\s*:\s*\[[^\]]*\Z')
+_OPEN_COLUMN = re.compile(rb'"(time|value|weight|predict|lat|lon)"\s*:\s*\[[^\]]*\Z')
 
 
 def read_json(body: bytes, query: TrendQuery) -> tuple[Columns, FitArguments]:
@@ -74,21 +79,32 @@ def read_json(body: bytes, query: TrendQuery) -> tuple[Columns, FitArguments]:
             "with a JSON body these belong into the body: " + ", ".join(misplaced),
             errors=[FieldError(name, "belongs into the body") for name in misplaced],
         )
-    fields = _read_object(body, FIELDS, "")
+    fields = read_object(body, FIELDS, "")
     arguments = read_arguments(
         {name: _scalar(raw, name) for name, raw in fields.items() if name not in COLUMN_FIELDS}
     )
     for name in ("time", "value"):
         if name not in fields:
             raise invalid_value(name, "is required")
-    time, form = _read_times(fields["time"], "time", arguments.time_unit)
+    time, form = read_times(fields["time"], "time", arguments.time_unit)
     predict: Times | None = None
-    if not _is_null(fields.get("predict")):
-        predict, asked_form = _read_times(fields["predict"], "predict", arguments.time_unit, form)
+    if not is_null(fields.get("predict")):
+        predict, asked_form = read_times(fields["predict"], "predict", arguments.time_unit, form)
         if asked_form != form:
             raise invalid_value("predict", "must be written in the same form as time")
-    weight = None if _is_null(fields.get("weight")) else _read_numbers(fields["weight"], "weight")
-    return Columns(time, _read_numbers(fields["value"], "value"), weight, predict, form), arguments
+    weight = None if is_null(fields.get("weight")) else read_numbers(fields["weight"], "weight")
+    horizon = _horizon(fields.get("horizon"), arguments.time_unit, form)
+    return Columns(time, read_numbers(fields["value"], "value"), weight, predict, form, horizon), arguments
+
+
+def _horizon(raw: msgspec.Raw | None, unit: TimeUnit | None, form: TimeForm) -> Times | None:
+    """One time, as a column of one."""
+    if raw is None or is_null(raw):
+        return None
+    horizon, asked_form = read_times(msgspec.Raw(b"[" + bytes(raw) + b"]"), "horizon", unit, form)
+    if asked_form != form:
+        raise invalid_value("horizon", "must be written in the same form as time")
+    return horizon
 
 
 def write_json(trend: Trend, columns: Columns, query: AnswerQuery) -> bytes:
@@ -96,8 +112,13 @@ def write_json(trend: Trend, columns: Columns, query: AnswerQuery) -> bytes:
     answer = trend.to_dict(points=False)
     if columns.form.kind == "epoch":
         answer["origin"] = columns.form.render(np.array([trend.origin], dtype="datetime64[ns]"))[0]
+        write_moments(answer, trend, columns.form)
     if columns.predict is not None:
         answer["prediction"]["time"] = columns.form.render(columns.predict)
+    if "alternative" in answer:
+        answer["alternative"]["origin"] = answer["origin"]
+        if columns.predict is not None:
+            answer["alternative"]["prediction"]["time"] = answer["prediction"]["time"]
     if query.points:
         answer["points"] = {
             "time": columns.form.render(columns.time),
@@ -115,7 +136,7 @@ def dumps(answer: Any) -> bytes:
     return orjson.dumps(answer, option=orjson.OPT_SERIALIZE_NUMPY | orjson.OPT_NAIVE_UTC | orjson.OPT_UTC_Z)
 
 
-def _read_object(text: bytes | msgspec.Raw, known: tuple[str, ...], prefix: str) -> dict[str, msgspec.Raw]:
+def read_object(text: bytes | msgspec.Raw, known: tuple[str, ...], prefix: str) -> dict[str, msgspec.Raw]:
     """Texts of an object's values by key; ``prefix`` names where it stands in errors."""
     try:
         pairs = _OBJECT.decode(text)
@@ -160,7 +181,7 @@ def _scalar(raw: msgspec.Raw, name: str) -> Any:
     if name == "options":
         known = tuple(TrendOptions.model_fields)
         return {
-            key: _scalar(text, f"options.{key}") for key, text in _read_object(raw, known, "options.").items()
+            key: _scalar(text, f"options.{key}") for key, text in read_object(raw, known, "options.").items()
         }
     try:
         return _ANY.decode(raw)
@@ -170,19 +191,21 @@ def _scalar(raw: msgspec.Raw, name: str) -> Any:
         ) from error
 
 
-def _is_null(raw: msgspec.Raw | None) -> bool:
+def is_null(raw: msgspec.Raw | None) -> bool:
+    """Whether a value is null or not there."""
     return raw is None or bytes(memoryview(raw)[:4]) == b"null"
 
 
-def _read_numbers(raw: msgspec.Raw, name: str) -> npt.NDArray[np.float64]:
-    return np.array(_decode_column(_NUMBERS, raw, name), dtype=np.float64)
+def read_numbers(raw: msgspec.Raw, name: str) -> npt.NDArray[np.float64]:
+    """Read a column of numbers; NaN where one is null."""
+    return np.array(decode_column(_NUMBERS, raw, name), dtype=np.float64)
 
 
-def _read_times(
+def read_times(
     raw: msgspec.Raw, name: str, unit: TimeUnit | None, like: TimeForm | None = None
 ) -> tuple[Times, TimeForm]:
     """Read a column of times and the form it came in; ``like`` decides where the column itself cannot."""
-    column = _decode_column(_TIMES, raw, name)
+    column = decode_column(_TIMES, raw, name)
     kinds = set(map(type, column)) - {type(None)}
     if str in kinds or (not kinds and like == TimeForm("iso")):
         if unit is not None:
@@ -218,7 +241,8 @@ def _floats(column: list[Any], name: str) -> npt.NDArray[np.float64]:
         raise invalid_value(name, "is too large a number for a 64-bit float", row) from None
 
 
-def _decode_column(decoder: msgspec.json.Decoder[Any], raw: msgspec.Raw, name: str) -> list[Any]:
+def decode_column(decoder: msgspec.json.Decoder[Any], raw: msgspec.Raw, name: str) -> list[Any]:
+    """Entries of a column; an error names the row."""
     try:
         column: list[Any] = decoder.decode(raw)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
@@ -237,6 +261,6 @@ def _bad_column(error: Exception, name: str) -> Problem:
         return invalid_value(name, "is too large a number for a 64-bit float", row)
     if row is None:
         return invalid_value(name, "must be an array")
-    wanted = "a number, ISO 8601 text or null" if name in ("time", "predict") else "a number or null"
+    wanted = _WANTED.get(name, "a number or null")
     got = text.partition("got `")[2].partition("`")[0]
     return invalid_value(name, f"expected {wanted}, got {got or 'something else'}", row)

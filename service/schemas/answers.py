@@ -10,9 +10,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from service.schemas.questions import CrossingAnswer, RegimeAnswer, SlopeAnswer
+
 WireTime = int | float | str | None
 SearchKind = Literal["sampled", "exhaustive", "certified", "closed"]
-RowReason = Literal["ok", "outlier", "missing", "invalid", "duplicate", "zero_weight"]
+RowReason = Literal["ok", "outlier", "missing", "invalid", "duplicate", "zero_weight", "earlier_regime"]
 NoFitReason = Literal["no_data", "too_few_points", "constant_time", "no_consensus", "too_large"]
 
 
@@ -83,6 +85,12 @@ class UncertaintyAnswer(Answer):
     ]
     lag1: float | None
     dof: float | None
+    resamples: Annotated[int | None, Field(description="Series that were fitted again.")] = None
+    block: Annotated[int | None, Field(description="Neighbouring points that were drawn together.")] = None
+    stability: Annotated[
+        float | None,
+        Field(description="Share of resampled series in which the same structure was found again."),
+    ] = None
 
 
 class RunnerUpAnswer(Answer):
@@ -121,6 +129,47 @@ class PointsAnswer(Answer):
     reason: list[RowReason]
 
 
+class NoiseAnswer(Answer):
+    """Noise of an exponential: in which domain readings scatter about the trend."""
+
+    domain: Annotated[
+        Literal["multiplicative", "additive"],
+        Field(
+            description="`multiplicative`: a share of the level; `sigma`, `threshold`, `residual` and `rmse` "
+            "are then of ln(value). `additive`: the same at every level."
+        ),
+    ]
+    selection: Annotated[
+        Literal["given", "selected", "undetermined", "method"],
+        Field(
+            description="Asked for; told from the data; undetermined, and the other answer is in "
+            "`alternative`; or the only one the method knows."
+        ),
+    ]
+    margin: Annotated[float | None, Field(description="Log evidence for it against the other.")]
+
+
+class SeasonAnswer(Answer):
+    """A periodic part of the trend; `season_1_amplitude` and `season_1_peak` are parameters of the first."""
+
+    period: Annotated[float, Field(description="In the unit of time: seconds for points in time.")]
+    harmonics: Annotated[int, Field(description="Pairs of cosine and sine.")]
+    chosen: Annotated[bool, Field(description="Whether the period was found in the data, and not given.")]
+
+
+class EvidenceAnswer(Answer):
+    """A shape of trend that was weighed."""
+
+    model: str
+    degree: Annotated[int | None, Field(description="Of a polynomial.")]
+    coefficients: int
+    log_evidence: float
+    margin: Annotated[float, Field(description="By how much it falls short of the best shape.")]
+    sigma: float
+    inliers: int
+    chosen: bool
+
+
 class TrendAnswer(Answer):
     """A robust trend through a series."""
 
@@ -129,7 +178,8 @@ class TrendAnswer(Answer):
     parameters: Annotated[
         dict[str, EstimateAnswer],
         Field(
-            description="`slope` per unit of time (per second for points in time), `intercept` at `origin`."
+            description="Of a line `slope` per unit of time (per second for points in time) and `intercept` "
+            "at `origin`; `/v1/models` names those of other shapes."
         ),
     ]
     origin: Annotated[
@@ -148,6 +198,34 @@ class TrendAnswer(Answer):
     prediction: PredictionAnswer | None
     notices: list[NoticeAnswer]
     points: Annotated[PointsAnswer | None, Field(description="Left out with `points=false`.")] = None
+    noise: Annotated[NoiseAnswer | None, Field(description="Of an exponential.")] = None
+    derived: Annotated[
+        dict[str, EstimateAnswer] | None,
+        Field(
+            description="Of an exponential: growth in per cent, `doubling_time` or `halving_time` in the "
+            "unit of time (a limit at infinity is null), and `mean_factor`: the mean over the median."
+        ),
+    ] = None
+    alternative: Annotated[
+        TrendAnswer | None,
+        Field(description="Answer under the other noise, where the data prefer neither; without `points`."),
+    ] = None
+    slope_per: Annotated[
+        SlopeAnswer | None, Field(description="The slope in the unit that suits the span; null without one.")
+    ]
+    regimes: Annotated[
+        list[RegimeAnswer] | None, Field(description="With `regime` `last`; the present one is the last.")
+    ] = None
+    crossings: Annotated[
+        list[CrossingAnswer] | None, Field(description="For each value of `reach`, in their order.")
+    ] = None
+    seasons: Annotated[
+        list[SeasonAnswer] | None, Field(description="Seasons fitted with the trend, if there are any.")
+    ] = None
+    evidence: Annotated[
+        list[EvidenceAnswer] | None,
+        Field(description="For each shape that the model `auto` weighed, the best first."),
+    ] = None
 
 
 class MethodAnswer(Answer):

@@ -8,6 +8,7 @@ registries.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
@@ -15,7 +16,9 @@ from pydantic_core import PydanticCustomError
 
 import estimators
 from estimators import RobustOptions
-from estimators.arrays import LARGEST_VALUE
+from estimators.arrays import LARGEST_TIME, LARGEST_VALUE, SMALLEST_TIME
+from estimators.trends.bases.settings import MOST_DEGREE, MOST_HARMONICS, MOST_PERIODS
+from service.schemas.questions import Horizon, Reach, Regime, read_values
 
 DEFAULTS = RobustOptions()
 METHOD_NAMES = tuple(estimators.methods())
@@ -83,6 +86,41 @@ Level = Annotated[
 Seed = Annotated[
     int, Field(ge=0, le=2**63 - 1, description="Seed of the search; the same seed gives the same bytes.")
 ]
+Noise = Annotated[
+    Literal["auto", "multiplicative", "additive"],
+    Field(
+        description="Noise of an exponential: `multiplicative` (a share of the level; `threshold` and "
+        "`sigma` are then of ln(value)), `additive` (the same at every level), or told from the data."
+    ),
+]
+Degree = Annotated[int, Field(ge=0, le=MOST_DEGREE, description="Degree of the polynomial of `linear`.")]
+PeriodName = Literal["hour", "day", "week", "month", "year"]
+Periods = Annotated[
+    Literal["auto"]
+    | Annotated[
+        list[Annotated[float, Field(ge=SMALLEST_TIME, le=LARGEST_TIME)] | PeriodName],
+        Field(min_length=1, max_length=MOST_PERIODS),
+    ],
+    Field(
+        description="Periods of seasons that are fitted together with the trend: in the unit of time "
+        "(seconds for points in time) or by name; or `auto`, which finds them."
+    ),
+]
+Harmonics = Annotated[
+    int,
+    Field(
+        ge=1,
+        le=MOST_HARMONICS,
+        description="Pairs of cosine and sine per season. Default: as the data support.",
+    ),
+]
+UncertaintyMethod = Annotated[
+    Literal["effective-n", "hac", "bootstrap", "permutation"],
+    Field(
+        description="How intervals and p-value are made: `effective-n` and `hac` by a formula, `bootstrap` "
+        "and `permutation` by running the whole procedure again `options.resamples` times."
+    ),
+]
 Unit = Annotated[
     TimeUnit,
     Field(
@@ -126,9 +164,32 @@ ThresholdSigmas = Annotated[
 AcceptableInliers = Annotated[
     int, Field(ge=3, description="Consensus at which `fischler-bolles` stops. Default: half of the points.")
 ]
+Resamples = Annotated[
+    int,
+    Field(ge=99, le=10_000, description="Series that `bootstrap` and `permutation` fit again."),
+]
 CorrectSerialCorrelation = Annotated[
     bool, Field(description="Widen intervals by the effective sample size where residuals are correlated.")
 ]
+
+
+def read_periods(texts: Sequence[str]) -> list[float | str] | str:
+    """Read periods that came as text: numbers, names, or the one word ``auto``.
+
+    Examples
+    --------
+    >>> read_periods(["365.25", "week"]), read_periods(["auto"])
+    ([365.25, 'week'], 'auto')
+    """
+    if list(texts) == ["auto"]:
+        return "auto"
+    periods: list[float | str] = []
+    for text in texts:
+        try:
+            periods.append(float(text))
+        except ValueError:
+            periods.append(text)
+    return periods
 
 
 class TrendOptions(BaseModel):
@@ -143,6 +204,7 @@ class TrendOptions(BaseModel):
     threshold_sigmas: ThresholdSigmas = DEFAULTS.threshold_sigmas
     acceptable_inliers: AcceptableInliers | None = DEFAULTS.acceptable_inliers
     correct_serial_correlation: CorrectSerialCorrelation = DEFAULTS.correct_serial_correlation
+    resamples: Resamples = DEFAULTS.resamples
 
 
 class FitArguments(BaseModel):
@@ -157,6 +219,13 @@ class FitArguments(BaseModel):
     sigma: Sigma | None = None
     level: Level = 0.95
     seed: Seed = 0
+    noise: Noise = "auto"
+    uncertainty: UncertaintyMethod = "effective-n"
+    degree: Degree | None = None
+    seasonal: Periods | None = None
+    harmonics: Harmonics | None = None
+    regime: Regime = "all"
+    reach: Reach | None = None
     options: TrendOptions = TrendOptions()
 
 
@@ -185,6 +254,7 @@ class TrendRequest(FitArguments):
         list[int | float | str] | None,
         Field(description="Times at which to predict, in the form of `time`."),
     ] = None
+    horizon: Horizon | None = None
 
 
 class AnswerQuery(BaseModel):
@@ -228,6 +298,22 @@ class TrendQuery(AnswerQuery):
     sigma: Sigma | None = None
     level: Level | None = None
     seed: Seed | None = None
+    noise: Noise | None = None
+    uncertainty: UncertaintyMethod | None = None
+    degree: Degree | None = None
+    seasonal: Annotated[
+        list[str] | None,
+        Field(description="Period of a season: a number, a name or `auto`; repeat it for further ones."),
+    ] = None
+    harmonics: Harmonics | None = None
+    regime: Regime | None = None
+    reach: Annotated[
+        list[str] | None,
+        Field(description="Value to reach: when does the trend get there? Repeat it or separate by commas."),
+    ] = None
+    horizon: Annotated[
+        str | None, Field(description="Time, in the form of the time column, by which `reach` is wanted.")
+    ] = None
     confidence: Annotated[Confidence | None, Field(alias="options.confidence")] = None
     max_hypotheses: Annotated[MaxHypotheses | None, Field(alias="options.max_hypotheses")] = None
     min_hypotheses: Annotated[MinHypotheses | None, Field(alias="options.min_hypotheses")] = None
@@ -237,6 +323,7 @@ class TrendQuery(AnswerQuery):
     correct_serial_correlation: Annotated[
         CorrectSerialCorrelation | None, Field(alias="options.correct_serial_correlation")
     ] = None
+    resamples: Annotated[Resamples | None, Field(alias="options.resamples")] = None
 
     def csv_only(self) -> list[str]:
         """Parameters given that only a CSV body allows, by their names on the wire."""
@@ -247,6 +334,10 @@ class TrendQuery(AnswerQuery):
         """Nest the fit's arguments that were given as in a JSON body."""
         given = self.model_dump(by_alias=True, include=self.model_fields_set, exclude_none=True)
         arguments = {name: value for name, value in given.items() if name in FitArguments.model_fields}
+        if "seasonal" in arguments:
+            arguments["seasonal"] = read_periods(arguments["seasonal"])
+        if "reach" in arguments:
+            arguments["reach"] = read_values(arguments["reach"])
         options = {
             name.removeprefix(OPTION_PREFIX): value
             for name, value in given.items()

@@ -231,3 +231,16 @@ def test_predictions_for_dates_say_what_a_date_looks_like() -> None:
 
 def test_an_unknown_option_is_code_2(table: Path) -> None:
     assert fit(table, "--bogus").exit_code == 2
+
+
+def test_a_season_and_a_degree_can_be_asked_for(tmp_path: Path) -> None:
+    path = tmp_path / "tides.csv"
+    hours = np.arange(96)
+    values = (2.0 + 0.05 * hours + 3.0 * np.sin(2 * np.pi * hours / 12)).round(4)
+    path.write_text("t,level\n" + "".join(f"{t},{y}\n" for t, y in zip(hours, values, strict=True)))
+    told = json.loads(fit(path, "--model", "linear", "--degree", 2, "--seasonal", 12, "--json").stdout)
+    assert told["seasons"][0]["period"] == 12.0
+    assert told["parameters"]["season_1_amplitude"]["value"] == pytest.approx(3.0, abs=0.01)
+    found = fit(path, "--seasonal", "auto")
+    assert "season of 12" in found.stdout
+    assert "--degree" in error_of(fit(path, "--degree", 2))

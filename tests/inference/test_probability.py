@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
+from benchmarks.coverage import calibration_error
 from estimators.inference.probability import inlier_probability
 
 RESIDUALS = hnp.arrays(np.float64, st.integers(1, 60), elements=st.floats(-1e6, 1e6))
@@ -15,12 +16,14 @@ RESIDUALS = hnp.arrays(np.float64, st.integers(1, 60), elements=st.floats(-1e6, 
 
 @settings(max_examples=200, deadline=None)
 @given(residual=RESIDUALS, sigma=st.floats(1e-6, 1e3))
-def test_probabilities_lie_between_0_and_1_and_fall_with_the_residual(
+def test_probabilities_lie_between_0_and_1_and_fall_with_the_residual_on_either_side(
     residual: np.ndarray, sigma: float
 ) -> None:
     z = inlier_probability(residual, None, sigma)
     assert ((z >= 0.0) & (z <= 1.0)).all()
-    assert (np.diff(z[np.argsort(np.abs(residual))]) <= 1e-12).all()
+    for side in (residual > 0.0, residual <= 0.0):
+        order = np.argsort(np.abs(residual[side]))
+        assert (np.diff(z[side][order]) <= 1e-12).all()
 
 
 @settings(max_examples=100, deadline=None)
@@ -50,5 +53,53 @@ def test_stated_probabilities_are_the_shares_that_come_true() -> None:
     assert z.mean() == pytest.approx(0.6, abs=0.02)
 
 
-def test_a_residual_beyond_all_floats_of_the_normal_law_has_probability_0() -> None:
-    assert inlier_probability(np.array([0.1, -0.2, 1e9]), None, 1.0)[2] == 0.0
+def _calibration(truth: np.ndarray, residual: np.ndarray) -> float:
+    z = inlier_probability(residual, None, 1.0)
+    return calibration_error(z, truth)
+
+
+def test_errors_that_keep_away_from_the_model_cast_no_doubt_on_its_followers() -> None:
+    rng = np.random.default_rng(2)
+    truth = rng.random(5_000) < 0.5
+    residual = np.where(truth, rng.normal(size=5_000), 5.0 + rng.exponential(15.0, 5_000))
+    z = inlier_probability(residual, None, 1.0)
+    assert z[truth].mean() > 0.98
+    assert z[~truth].mean() < 0.01
+
+
+def test_heavy_tails_are_told_from_errors_by_how_they_thin_out() -> None:
+    rng = np.random.default_rng(3)
+    truth = rng.random(5_000) < 0.8
+    residual = np.where(truth, rng.standard_t(2, 5_000), rng.uniform(-60.0, 60.0, 5_000))
+    assert _calibration(truth, residual) < 0.02
+    z = inlier_probability(residual, None, 1.0)
+    near = truth & (np.abs(residual) > 3.0) & (np.abs(residual) < 5.0)
+    assert z[near].mean() > 0.6
+
+
+def test_a_gross_error_among_heavy_tails_is_still_an_error() -> None:
+    residual = np.append(np.random.default_rng(4).standard_t(2, 300), 1e9)
+    assert inlier_probability(residual, None, 1.0)[-1] < 1e-9
+
+
+def test_a_clean_series_is_hardly_doubted() -> None:
+    z = inlier_probability(np.random.default_rng(5).normal(size=50), None, 1.0)
+    assert z.mean() > 0.98
+
+
+@pytest.mark.parametrize("points", [1, 2, 3])
+def test_few_residuals_have_probabilities_too(points: int) -> None:
+    z = inlier_probability(np.linspace(-0.5, 0.5, points), None, 1.0)
+    assert ((z > 0.5) & (z < 1.0)).all()
+
+
+def test_a_long_series_is_judged_by_a_part_of_it_and_answered_in_full() -> None:
+    rng = np.random.default_rng(6)
+    residual = np.where(rng.random(200_000) < 0.7, rng.normal(size=200_000), rng.uniform(-60, 60, 200_000))
+    whole = inlier_probability(residual, None, 1.0)
+    part = inlier_probability(residual[::4].copy(), None, 1.0)
+    np.testing.assert_allclose(whole[::4], part, atol=0.05)
+
+
+def test_a_residual_beyond_all_floats_of_the_normal_law_has_next_to_no_probability() -> None:
+    assert inlier_probability(np.array([0.1, -0.2, 1e9]), None, 1.0)[2] < 1e-12

@@ -154,3 +154,25 @@ def test_answers_tell_how_long_each_phase_took(client: TestClient) -> None:
     phases = dict(part.split(";dur=") for part in header.split(", "))
     assert list(phases) == ["parse", "queue", "fit", "encode"]
     assert all(math.isfinite(float(value)) and float(value) >= 0 for value in phases.values())
+
+
+def test_seasons_and_the_evidence_for_a_shape_go_over_the_wire(client: TestClient) -> None:
+    times, _ = contaminated()
+    seasonal = {"seasonal": [12.0], "harmonics": 1}
+    answer = post(client, body(model="linear", degree=2, **seasonal))
+    assert answer == library(times, model="linear", degree=2, **seasonal)
+    assert answer["seasons"] == [{"period": 12.0, "harmonics": 1, "chosen": False}]
+    TrendAnswer.model_validate(answer)
+    told = post(client, body(model="auto", seasonal="auto"))
+    assert told == library(times, model="auto", seasonal="auto")
+    assert [row["chosen"] for row in told["evidence"]].count(True) == 1
+    TrendAnswer.model_validate(told)
+
+
+@pytest.mark.parametrize(
+    "fields", [{"seasonal": [1e9]}, {"seasonal": ["year"]}, {"degree": 2}, {"harmonics": 2}]
+)
+def test_seasons_that_cannot_be_fitted_are_a_problem(client: TestClient, fields: dict[str, Any]) -> None:
+    response = client.post("/v1/trends", json=body(**fields))
+    assert response.status_code == 422, response.text
+    assert response.json()["errors"][0]["field"] in fields

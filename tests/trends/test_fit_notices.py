@@ -48,6 +48,12 @@ CASES: dict[NoticeCode, Callable[[], Iterable[Notice]]] = {
     NoticeCode.float_nanoseconds: lambda: fitted(1.7e18 + 1e9 * T, LINE).notices,
     NoticeCode.extrapolation: lambda: fitted(T, LINE).predict([200.0]).notices,
     NoticeCode.not_robust: lambda: fitted(T, LINE, method="ols").notices,
+    NoticeCode.nonpositive_values: lambda: (
+        fitted(T, _with(LINE, 3, 0.0), model="exponential", noise="multiplicative").notices
+    ),
+    NoticeCode.undetermined_noise: lambda: fitted(T, 100.0 + NOISE, model="exponential").notices,
+    NoticeCode.earlier_regimes: lambda: fitted(T, LINE + 20.0 * (T[60] < T), regime="last").notices,
+    NoticeCode.rate_near_zero: lambda: fitted(T, 100.0 + NOISE, model="exponential").notices,
 }
 
 

@@ -21,6 +21,7 @@ from estimators.consensus.samplers.uniform import Uniform
 from estimators.consensus.search.closed import found_from_fit, refuse
 from estimators.options import RobustOptions
 from estimators.regression.bisquare import BISQUARE
+from estimators.regression.least_deviations import least_deviations
 from estimators.regression.least_squares import least_squares
 from estimators.regression.minimal_fits import solve_samples
 from estimators.regression.mm import mm_estimate
@@ -37,9 +38,13 @@ class MMSearch:
     ----------
     starts : int
         Minimal samples drawn where they are not enumerated (default 500, as fast-S was published).
+    starts_from_deviations : bool
+        Whether the least absolute deviations are a start too (default False). Designs with columns that are
+        zero at most points, as indicators of categories are, need it: their minimal samples are degenerate.
     """
 
     starts: int = 500
+    starts_from_deviations: bool = False
     needs_threshold: ClassVar[bool] = False
 
     def run(self, data: LinearData, scale: Scale, options: RobustOptions, seed: int) -> Found | NoFit:
@@ -51,12 +56,14 @@ class MMSearch:
         draws = bind_sampler(Uniform.code, data.t, data.p, _NO_ORDER, seed, limit, options.work_budget)
         count = limit if draws.total is None else draws.total
         models = solve_samples(data.columns, data.y, draws.block(0, count))
-        least, _, _ = least_squares(data.columns, data.y, data.weights)
+        others = [least_squares(data.columns, data.y, data.weights)[0]]
+        if self.starts_from_deviations:
+            others.append(least_deviations(data.columns, data.y, data.weights))
         fit = mm_estimate(
             data.columns,
             data.y,
             data.weights,
-            starts=np.vstack([models, least]),
+            starts=np.vstack([models, *others]),
             floor=scale.floor,
             sigma=scale.sigma,
         )
@@ -65,7 +72,7 @@ class MMSearch:
             degenerate=count - models.shape[0],
             scored=models.shape[0],
             point_evaluations=fit.initial.evaluations,
-            optimizations=models.shape[0] + 1,
+            optimizations=models.shape[0] + len(others),
         )
         found = found_from_fit(
             data,

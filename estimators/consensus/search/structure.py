@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from estimators.arrays import FloatArray, InputError
-from estimators.consensus.found import Found, LinearData, OtherStructure, Scale
+from estimators.arrays import FloatArray
+from estimators.consensus.found import Found, LinearData, LineData, OtherStructure, Scale
+from estimators.consensus.search.basis import BasisSearch
 from estimators.consensus.search.closed import OrdinaryLeastSquares, no_fit
 from estimators.consensus.search.mm import MMSearch
 from estimators.consensus.stopping import clean_probability
@@ -40,7 +41,7 @@ class StructureSearch:
         Parameters
         ----------
         data : LinearData
-            A line.
+            A line; other models go the way of :class:`~estimators.consensus.search.basis.BasisSearch`.
         scale : Scale
             A given sigma fixes the noise scale, a given threshold the labels.
         options : RobustOptions
@@ -53,8 +54,8 @@ class StructureSearch:
             Least squares on all points where there are fewer than four, an MM-estimate where no line stands
             out; ``NoFit`` where none does at a given sigma.
         """
-        if data.p != 2:
-            raise InputError("method", f"auto fits lines only; this model has {data.p} coefficients")
+        if not _is_line(data):
+            return BasisSearch().run(data, scale, options, seed)
         if data.n < LEAST_POINTS:
             return OrdinaryLeastSquares().run(data, scale, options, seed)
         n = data.n
@@ -98,6 +99,13 @@ class StructureSearch:
             runner_up=_runner_up(record),
             sums=sums[0],
         )
+
+
+def _is_line(data: LinearData) -> bool:
+    """Whether the design is ``[1, t]``."""
+    if isinstance(data, LineData) or data.p != 2:
+        return data.p == 2
+    return bool(np.all(data.columns[0] == 1.0)) and np.array_equal(data.columns[1], data.t)
 
 
 def _without_structure(data: LinearData, scale: Scale, options: RobustOptions) -> Found | NoFit:

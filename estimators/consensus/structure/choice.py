@@ -52,8 +52,8 @@ _SEARCHED_FEW = 2.2
 
 It gains more the fewer readings it holds, since there are more few-point structures to choose from: at one
 price for all shares, a tenth of clean series of 50 points were taken for a line of less than a third of them.
-The two numbers are a compromise: higher ones turn down real structures of 10 points in 50, and the four giants
-of the star cluster CYG OB1 (Rousseeuw and Leroy 1987), which plain least squares follows.
+The two numbers are a compromise: higher ones turn down real structures of 10 points in 50, and the four
+giants of the star cluster CYG OB1 (Rousseeuw and Leroy 1987), which plain least squares follows.
 """
 _APART = 2.0
 """Scales by which a runner-up must differ from the best line."""

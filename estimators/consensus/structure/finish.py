@@ -262,23 +262,15 @@ def label_points(
     weighted: bool,
     level: float,
     slope: float,
-    s: float,
     threshold: float,
-    follow: FloatArray,
     inlier: BoolArray,
-    probability: FloatArray,
     residual: FloatArray,
 ) -> None:
-    """Fill residuals, posteriors and labels of all points."""
-    inverse = CELLS_PER_SIGMA / s
+    """Fill residuals and labels of all points."""
     root = 1.0
     for i in range(t.size):
         r = y[i] - level - slope * t[i]
         if weighted:
             root = root_weight[i]
-        whitened = r * root
-        x = min(max(whitened * inverse, -TABLE + 1e-6), TABLE - 1e-6) + TABLE
-        k = int(x)
-        probability[i] = follow[k] + (x - k) * (follow[k + 1] - follow[k])
-        inlier[i] = abs(whitened) <= threshold
+        inlier[i] = abs(r * root) <= threshold
         residual[i] = r

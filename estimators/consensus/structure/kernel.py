@@ -6,6 +6,7 @@ import numpy as np
 from numba import types
 
 from estimators.arrays import BoolArray, FloatArray, IntArray
+from estimators.consensus.labelling.posterior import posterior_of
 from estimators.consensus.structure import record as slots
 from estimators.consensus.structure.candidates import EVALUATIONS, PROPOSED, WEIGHED
 from estimators.consensus.structure.choice import BANK, find_second, find_structure
@@ -105,9 +106,7 @@ def fit_series(
     newton = np.empty(8)
     solve_line(t, y, root_weight, weighted, level, slope, s, weight, line, newton)
     threshold = given_threshold if given_threshold > 0.0 else threshold_sigmas * s
-    label_points(
-        t, y, root_weight, weighted, line[0], line[1], s, threshold, follow, inlier, probability, residual
-    )
+    label_points(t, y, root_weight, weighted, line[0], line[1], threshold, inlier, residual)
     # The last Newton step stood close to the line: its sums are the curvature.
     sums[A0], sums[A1], sums[A2] = newton[2], newton[3], newton[4]
     sums[W0], sums[W1], sums[W2] = newton[5], newton[6], newton[7]
@@ -115,6 +114,7 @@ def fit_series(
     if given_sigma <= 0.0 and chosen[SIGMA] <= 10.0 * finest and sums[INLIERS] > 2.0:
         # The structure is as fine as could be told apart; how fine it really is, its inliers say.
         s = max(floor, np.sqrt(sums[SSE] / (sums[INLIERS] - 2.0)))
+    posterior_of(residual, root_weight, s, probability)
     record[slots.FOUND] = 1.0
     record[slots.LEVEL] = line[0]
     record[slots.SLOPE] = line[1]

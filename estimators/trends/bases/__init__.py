@@ -1,0 +1,1 @@
+"""Trends that are linear in their coefficients: polynomials, seasons, the caller's own columns."""

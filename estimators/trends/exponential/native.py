@@ -1,0 +1,205 @@
+"""From an exponential found under additive noise to a :class:`~estimators.trends.trend.Trend`."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+
+from estimators.arrays import LARGEST_VALUE, FloatArray
+from estimators.consensus.found import OtherStructure, Scale
+from estimators.inference.intervals import two_sided_p
+from estimators.inference.probability import inlier_probability
+from estimators.inference.sandwich import LineUncertainty, line_uncertainty
+from estimators.noise.resolution import find_quantisation, scale_floor
+from estimators.regression.influence import SUPPORT, influence_sums
+from estimators.result import Consensus, NoFit, NoFitReason, Uncertainty
+from estimators.trends.exponential.additive import AdditiveFit, find_additive
+from estimators.trends.exponential.curve import ExponentialCurve
+from estimators.trends.labels import label_rows
+from estimators.trends.line import Frame
+from estimators.trends.line_fit import LEAST_FLOOR
+from estimators.trends.magnitude import in_value_units, value_unit
+from estimators.trends.observations import Evidence, collect_notices
+from estimators.trends.quality import fit_quality
+from estimators.trends.request import Request, no_fit
+from estimators.trends.resampling import LineFit, infer_line
+from estimators.trends.runner_up import LEAST_MARGIN, LEAST_SUPPORT, NOTABLE_SHARE, RIVAL_SHARE
+from estimators.trends.trend import RunnerUp, Trend
+
+
+def fit_native(request: Request, curves: tuple[ExponentialCurve, ...]) -> Trend | NoFit:
+    """Fit an exponential under additive noise.
+
+    Parameters
+    ----------
+    request : Request
+        Threshold and sigma are in units of the values.
+    curves : tuple of ExponentialCurve
+        Where to look first, beside the curves through pairs of readings.
+    """
+    unit = value_unit(request.series.y)
+    if unit == 1.0:
+        return _fit(request, curves)
+    threshold, sigma = request.threshold, request.sigma
+    magnified = dataclasses.replace(
+        request,
+        series=dataclasses.replace(request.series, y=request.series.y / unit),
+        threshold=None if threshold is None else min(threshold / unit, LARGEST_VALUE),
+        sigma=None if sigma is None else min(sigma / unit, LARGEST_VALUE),
+    )
+    trend = _fit(magnified, tuple(curve.in_value_units(1.0 / unit) for curve in curves))
+    return trend if isinstance(trend, NoFit) else in_value_units(trend, unit)
+
+
+def _fit(request: Request, curves: tuple[ExponentialCurve, ...]) -> Trend | NoFit:
+    series, options = request.series, request.options
+    frame = Frame.of(series.t)
+    t = frame.apply(series.t)
+    quantisation = find_quantisation(series.y, series.t)
+    floor = max(scale_floor(series.y, quantisation), LEAST_FLOOR)
+    if request.sigma is not None:
+        floor = min(floor, request.sigma)
+    scale = Scale(request.sigma, "given", request.threshold, "given", floor)
+    seeds = np.array([_in_frame(curve, frame) for curve in curves]).reshape(-1, 2)
+    largest = max((_largest(curve, request) for curve in curves), default=0.0)
+    own_root = None if series.weights is None else np.sqrt(series.weights)
+    fit = find_additive(t, series.y, series.weights, scale, options, seeds, largest)
+    if isinstance(fit, NoFit):
+        return no_fit(fit.reason, fit.message, series)
+    if fit is None:
+        message = "No exponential stands out: no two of the values, of one sign, have others follow them."
+        return no_fit(NoFitReason.no_consensus, message, series)
+    found, unit, root = fit.found, fit.unit, np.sqrt(np.asarray(fit.data.weights))
+    sums = influence_sums(
+        fit.data.t, fit.data.y, found.residual, root, found.sigma, found.threshold, found.loss
+    )
+    residual = series.y - _values(fit, t)
+    sigma, threshold = found.sigma * unit, found.threshold * unit
+    native = influence_sums(t, series.y, residual, own_root, sigma, threshold, found.loss)
+    # The line's precisions are a matter of geometry: by their own, all readings are worth the same.
+    sums[SUPPORT] = native[SUPPORT]
+    r2, rmse = fit_quality(native)
+
+    def spread_of(*, correct: bool) -> LineUncertainty | None:
+        return line_uncertainty(sums, series.n, found.sigma, found.spread, correct_serial_correlation=correct)
+
+    line = LineFit(
+        data=fit.data,
+        found=found,
+        root=root,
+        spread=spread_of(correct=options.correct_serial_correlation),
+        independent=lambda: spread_of(correct=False),
+        refit=lambda _: None,
+    )
+    spread = infer_line(line, request.uncertainty, request.level, options.resamples, request.seed).spread
+    curve = _curve_of(fit, frame, spread, (float(series.t[0]), float(series.t[-1])))
+    off = np.abs(residual) if own_root is None else np.abs(residual) * own_root
+    inlier = off <= threshold
+    inliers = int(np.count_nonzero(inlier))
+    dof = None if spread is None else spread.dof
+    own = dataclasses.replace(found, residual=residual, inlier=inlier, sigma=sigma, threshold=threshold)
+    other = _rival(fit.other, frame, inliers, own.sigma, unit)
+    probability = inlier_probability(residual, own_root, max(sigma, floor))
+    evidence = Evidence(series, request.preset, own, inliers, spread, quantisation, floor, rmse, other)
+    return Trend(
+        model="exponential",
+        parameters=curve.parameters(0.0, request.level, dof),
+        origin=series.axis.origin,
+        points=label_rows(series, inlier, probability, residual),
+        consensus=Consensus(
+            method=request.preset.name,
+            n=series.n,
+            inliers=inliers,
+            inlier_ratio=inliers / series.n,
+            threshold=own.threshold,
+            threshold_source=own.threshold_source,
+            sigma=own.sigma,
+            sigma_source=own.sigma_source,
+            ledger=own.ledger,
+            sampling_probability=own.sampling_probability,
+            search=own.search,
+            seed=request.seed,
+        ),
+        uncertainty=_describe(spread, request.level),
+        p_value=two_sided_p(_statistic(curve), dof),
+        r2=r2,
+        rmse=rmse,
+        runner_up=other,
+        notices=collect_notices(evidence),
+        axis=series.axis,
+        geometry=curve,
+        time=series.input_time,
+        values=series.input_values,
+    )
+
+
+def _in_frame(curve: ExponentialCurve, frame: Frame) -> tuple[float, float]:
+    """Level at frame time 0 and rate in the frame."""
+    at_middle = curve.log_level + curve.rate * (frame.middle - curve.center)
+    return curve.sign * math.exp(min(max(at_middle, -700.0), 700.0)), curve.rate * frame.half
+
+
+def _largest(curve: ExponentialCurve, request: Request) -> float:
+    """Size of the largest reading that is near a curve, by its noise scale."""
+    y, t = request.series.y, request.series.t
+    with np.errstate(over="ignore", under="ignore"):
+        near = np.abs(y) <= np.exp(curve.log_value(t) + 5.0 * min(curve.sigma, 1.0))
+    return float(np.abs(y[near]).max()) if near.any() else 0.0
+
+
+def _values(fit: AdditiveFit, t: FloatArray) -> FloatArray:
+    """Curve at times in the frame, in units of the values."""
+    return np.asarray(float(fit.found.theta[0]) * fit.unit * np.exp(fit.rate * (t - fit.anchor)))
+
+
+def _curve_of(
+    fit: AdditiveFit, frame: Frame, spread: LineUncertainty | None, span: tuple[float, float]
+) -> ExponentialCurve:
+    amplitude = float(fit.found.theta[0])
+    center = 0.0 if spread is None else spread.center
+    nothing = math.nan
+    return ExponentialCurve(
+        noise="additive",
+        sign=math.copysign(1.0, amplitude),
+        center=frame.middle + frame.half * (fit.anchor + center),
+        log_level=math.log(abs(amplitude) * fit.unit) + fit.rate * center,
+        rate=fit.rate / frame.half,
+        level_stderr=nothing if spread is None else math.sqrt(spread.level_variance) / abs(amplitude),
+        rate_stderr=nothing
+        if spread is None
+        else math.sqrt(spread.slope_variance) / abs(amplitude) / frame.half,
+        sigma=fit.found.sigma * fit.unit,
+        span=span,
+    )
+
+
+def _rival(
+    other: OtherStructure | None, frame: Frame, own: int, sigma: float, unit: float
+) -> RunnerUp | None:
+    if other is None or other.inliers < max(LEAST_SUPPORT, NOTABLE_SHARE * own):
+        return None
+    level, rate = float(other.theta[0]), float(other.theta[1])
+    log_level = math.log(abs(level) * unit) - rate * frame.middle / frame.half if level else -math.inf
+    if not abs(log_level) < 700.0:
+        return None
+    same_scatter = 0.5 * sigma <= other.sigma * unit <= 2.0 * sigma
+    return RunnerUp(
+        parameters={"rate": rate / frame.half, "level": math.copysign(math.exp(log_level), level)},
+        inliers=other.inliers,
+        sigma=other.sigma * unit,
+        equally_good=other.margin < LEAST_MARGIN or (same_scatter and other.inliers >= RIVAL_SHARE * own),
+    )
+
+
+def _statistic(curve: ExponentialCurve) -> float:
+    if curve.rate_stderr == 0.0:
+        return math.copysign(math.inf, curve.rate) if curve.rate else 0.0
+    return curve.rate / curve.rate_stderr
+
+
+def _describe(spread: LineUncertainty | None, level: float) -> Uncertainty:
+    if spread is None:
+        return Uncertainty("none", level, None, None, None)
+    return Uncertainty(spread.method, level, spread.effective_n, spread.lag1, spread.dof)

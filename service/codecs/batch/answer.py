@@ -1,0 +1,166 @@
+"""A slice of fitted series as an Arrow record batch: the one form from which every format is written.
+
+One row per series. Numbers that a series does not have are null. With points, the rows of a series stand in
+lists beside it, in the order of the table they came in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pyarrow as pa
+
+import estimators
+from estimators.arrays import Reason
+from service.codecs.batch.rows import Batch
+from service.codecs.columns import UNIT_NANOSECONDS, TimeForm, Times
+
+if TYPE_CHECKING:
+    from estimators import TrendTable
+
+#: Figures of a series in the order of the columns.
+FIGURES = ("inlier_ratio", "threshold", "sigma", "p_value", "r2", "rmse", "effective_n", "lag1", "dof")
+
+POINT_PREFIX = "point_"
+
+#: Parts of an estimate, and what the column of each adds to the parameter's name.
+_PARTS = {"value": "", "stderr": "_stderr", "low": "_low", "high": "_high"}
+
+_REASONS = pa.array([member.name for member in Reason])
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What a writer writes.
+
+    Attributes
+    ----------
+    model, method : str
+    level : float
+    seed : int
+    form : TimeForm
+        How times are written.
+    has_positions : bool
+    has_points : bool
+    parts : iterator of pyarrow.RecordBatch
+        All of one schema; made while they are written.
+    """
+
+    model: str
+    method: str
+    level: float
+    seed: int
+    form: TimeForm
+    has_positions: bool
+    has_points: bool
+    parts: Iterator[Any]
+
+    @property
+    def time_unit(self) -> str | None:
+        """Unit of time of the parameters; None for plain numbers."""
+        return None if self.form.kind == "number" else "second"
+
+
+def parameters_of(model: str) -> tuple[str, ...]:
+    """Names of the parameters that a series may have, those that no series of a slice has among them.
+
+    The columns of an answer are settled before its first slice is fitted; where the shape is told from the
+    data they are the parameters of all shapes, null for those that a series' shape does not have.
+
+    Examples
+    --------
+    >>> parameters_of("exponential")
+    ('rate', 'level')
+    """
+    known = estimators.models()
+    of_all = dict.fromkeys(name for row in known.values() for name in row.parameters)
+    return known[model].parameters or tuple(of_all)
+
+
+def to_record_batch(batch: Batch, first: int, table: TrendTable, *, points: bool) -> Any:
+    """Record batch of some series of a batch.
+
+    Parameters
+    ----------
+    batch : Batch
+    first : int
+        Place of the first of these series.
+    table : TrendTable
+        Fits of the series from there on.
+    points : bool
+
+    Returns
+    -------
+    pyarrow.RecordBatch
+    """
+    last = first + len(table)
+    names = batch.names[first:last]
+    columns: dict[str, Any] = {
+        "series": pa.array(names, pa.int64() if isinstance(names[0], int) else pa.string()),
+        "fitted": pa.array(table.fitted),
+        "reason": _texts(table.reason),
+        "message": _texts(table.message),
+    }
+    for name in parameters_of(table.model):
+        estimates = table.parameters.get(name)
+        for part, title in _PARTS.items():
+            found = np.full(len(table), np.nan) if estimates is None else getattr(estimates, part)
+            columns[name + title] = _numbers(found)
+    columns["origin"] = _times(np.asarray(table.origin), batch)
+    columns["n"] = pa.array(np.asarray(table.n, dtype=np.int64))
+    columns["inliers"] = pa.array(np.asarray(table.inliers, dtype=np.int64))
+    columns |= {name: _numbers(getattr(table, name)) for name in FIGURES}
+    columns["notices"] = pa.array([list(codes) for codes in table.notices], pa.list_(pa.string()))
+    if batch.lat is not None and batch.lon is not None:
+        columns["lat"] = _numbers(batch.lat[first:last])
+        columns["lon"] = _numbers(batch.lon[first:last])
+    if points:
+        columns |= _points(batch, first, table)
+    return pa.RecordBatch.from_pydict(columns)
+
+
+def _points(batch: Batch, first: int, table: TrendTable) -> dict[str, Any]:
+    offsets = batch.offsets[first : first + len(table) + 1]
+    rows = slice(int(offsets[0]), int(offsets[-1]))
+    starts = pa.array((offsets - offsets[0]).astype(np.int32))
+    row = np.arange(rows.start, rows.stop) if batch.row is None else batch.row[rows]
+    labels = table.points
+    flat = {
+        "row": pa.array(row),
+        "time": _times(batch.time[rows], batch),
+        "inlier": pa.array(labels.inlier),
+        "probability": _numbers(labels.probability),
+        "residual": _numbers(labels.residual),
+        "reason": _REASONS.take(pa.array(labels.reason_codes)),
+    }
+    return {
+        f"{POINT_PREFIX}{name}": pa.ListArray.from_arrays(starts, column) for name, column in flat.items()
+    }
+
+
+def _texts(items: tuple[str, ...]) -> Any:
+    return pa.array([item or None for item in items], pa.string())
+
+
+def _numbers(column: Any) -> Any:
+    """Floats with null for NaN."""
+    return pa.array(np.asarray(column, dtype=np.float64), from_pandas=True)
+
+
+def _times(times: Times, batch: Batch) -> Any:
+    """Render times in the form they came: numbers, timestamps in UTC, or numbers since 1970."""
+    form = batch.form
+    if form.kind == "number":
+        return _numbers(times) if times.dtype.kind == "f" else pa.array(times)
+    moments = times.astype("datetime64[ns]")
+    if form.kind == "iso":
+        return pa.array(moments).cast(pa.timestamp("ns", "UTC"))
+    factor = UNIT_NANOSECONDS[form.unit or "s"]
+    missing = np.isnat(moments)
+    quotient, rest = np.divmod(moments.astype(np.int64), factor)
+    if batch.whole:
+        return pa.array(quotient, mask=missing)
+    return pa.array(quotient + rest / factor, mask=missing)

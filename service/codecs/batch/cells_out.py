@@ -1,0 +1,57 @@
+"""Columns of an answer as Python values, for the formats that are text: JSON, NDJSON, GeoJSON and CSV.
+
+NaN stands for "there is none", which orjson writes as null.
+"""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from service.codecs.columns import TimeForm
+
+_ISO = TimeForm("iso")
+
+
+def to_values(column: Any) -> list[Any]:
+    """Entries of a column; a list column gives lists, a point in time ISO 8601 text.
+
+    Parameters
+    ----------
+    column : pyarrow.Array
+
+    Returns
+    -------
+    list, length n
+
+    Examples
+    --------
+    >>> to_values(pa.array([[1, 2], [], [3]]))
+    [[1, 2], [], [3]]
+    """
+    kind = column.type
+    if pa.types.is_list(kind):
+        offsets = column.offsets.to_numpy().tolist()
+        flat = to_values(column.values)
+        return [flat[start:stop] for start, stop in itertools.pairwise(offsets)]
+    if pa.types.is_timestamp(kind):
+        rendered = _ISO.render(column.cast(pa.timestamp("ns")).to_numpy(zero_copy_only=False))
+        if isinstance(rendered, list):
+            return rendered
+        texts: list[str] = np.datetime_as_string(np.asarray(rendered, dtype="datetime64[s]")).tolist()
+        return [f"{text}Z" for text in texts]
+    if pa.types.is_floating(kind) or (pa.types.is_primitive(kind) and not column.null_count):
+        values: list[Any] = column.to_numpy(zero_copy_only=False).tolist()
+        return values
+    listed: list[Any] = column.to_pylist()
+    return listed
+
+
+def to_rows(part: Any) -> list[dict[str, Any]]:
+    """Rows of a record batch as dicts."""
+    names = part.schema.names
+    columns = [to_values(column) for column in part.columns]
+    return [dict(zip(names, row, strict=True)) for row in zip(*columns, strict=True)]

@@ -1,0 +1,156 @@
+"""Inference on request: ``fit_trend(uncertainty=...)``."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from estimators import InputError, RobustOptions, Trend, fit_trend
+from estimators.consensus.cancellation import Cancelled, cancelled_by
+from estimators.trends.resampling import UNCERTAINTIES
+from tests.statistics.bounds import most
+
+FEW = RobustOptions(resamples=99)
+
+
+def _series(seed: int = 0, n: int = 60, slope: float = 0.1) -> tuple[np.ndarray, np.ndarray]:
+    rng = np.random.default_rng(seed)
+    t = np.cumsum(rng.exponential(size=n))
+    y = 3.0 + slope * t + rng.normal(size=n)
+    y[::7] += 25.0
+    return t, y
+
+
+def _fit(uncertainty: str, **options: object) -> Trend:
+    trend = fit_trend(*_series(), uncertainty=uncertainty, options=FEW, **options)
+    assert isinstance(trend, Trend)
+    return trend
+
+
+def test_the_default_is_the_formula_of_effective_n() -> None:
+    plain = fit_trend(*_series())
+    assert plain.to_dict() == fit_trend(*_series(), uncertainty="effective-n").to_dict()
+    assert plain.uncertainty.method == "effective-n"
+    assert plain.uncertainty.resamples is None
+
+
+@pytest.mark.parametrize("uncertainty", UNCERTAINTIES)
+def test_every_method_finds_the_same_line_and_names_itself(uncertainty: str) -> None:
+    trend = _fit(uncertainty)
+    default = _fit("effective-n")
+    assert trend.uncertainty.method == uncertainty
+    assert trend.parameters["slope"].value == default.parameters["slope"].value
+    np.testing.assert_array_equal(trend.points.inlier, default.points.inlier)
+    width = trend.parameters["slope"].high - trend.parameters["slope"].low
+    usual = default.parameters["slope"].high - default.parameters["slope"].low
+    # Five or so degrees of freedom leave the long-run variance uncertain by half.
+    assert 0.3 < width / usual < 3.0
+    assert trend.p_value < 0.05
+
+
+@pytest.mark.parametrize("uncertainty", UNCERTAINTIES)
+@pytest.mark.parametrize("method", ["msac", "mm", "theil-sen", "ols"])
+def test_every_preset_offers_every_method(uncertainty: str, method: str) -> None:
+    trend = _fit(uncertainty, method=method)
+    assert 0.0 < trend.p_value <= 1.0
+    assert trend.parameters["slope"].low < trend.parameters["slope"].high
+
+
+@pytest.mark.parametrize("uncertainty", ["bootstrap", "permutation"])
+def test_the_same_seed_gives_the_same_answer_and_another_hardly_a_different_one(uncertainty: str) -> None:
+    assert _fit(uncertainty, seed=4).to_dict() == _fit(uncertainty, seed=4).to_dict()
+    one, other = _fit(uncertainty, seed=4), _fit(uncertainty, seed=5)
+    assert one.to_dict() != other.to_dict()
+    assert one.parameters["slope"].value == other.parameters["slope"].value
+
+
+def test_the_bootstrap_says_how_often_it_found_the_same_structure() -> None:
+    uncertainty = _fit("bootstrap").uncertainty
+    assert uncertainty.resamples == 99
+    assert 0.9 <= uncertainty.stability <= 1.0
+    assert uncertainty.block >= 1
+
+
+def test_a_line_that_few_readings_follow_is_an_unstable_answer() -> None:
+    rng = np.random.default_rng(2)
+    t = np.arange(40.0)
+    y = 0.2 * t + rng.normal(size=40)
+    y[rng.choice(40, 30, replace=False)] += rng.uniform(4.0, 30.0, 30)
+    assert fit_trend(t, y, uncertainty="bootstrap", options=FEW).uncertainty.stability < 0.8
+
+
+def test_a_permutation_p_value_counts_the_series_itself_and_leaves_intervals_alone() -> None:
+    trend, default = _fit("permutation"), _fit("effective-n")
+    assert (trend.p_value * 100) == pytest.approx(round(trend.p_value * 100))
+    assert trend.p_value >= 0.01
+    assert trend.parameters == default.parameters
+
+
+@pytest.mark.parametrize("uncertainty", ["hac", "bootstrap"])
+def test_the_p_value_and_the_interval_agree_at_the_level(uncertainty: str) -> None:
+    for seed in range(8):
+        t, y = _series(seed, slope=0.02)
+        trend = fit_trend(t, y, uncertainty=uncertainty, options=FEW)
+        slope = trend.parameters["slope"]
+        assert (trend.p_value < 0.05) == (not slope.low <= 0.0 <= slope.high)
+
+
+@pytest.mark.parametrize("uncertainty", ["hac", "bootstrap", "permutation"])
+def test_the_unit_of_the_values_is_arbitrary(uncertainty: str) -> None:
+    t, y = _series()
+    one = fit_trend(t, y, uncertainty=uncertainty, options=FEW)
+    other = fit_trend(t, 2.0**20 * y, uncertainty=uncertainty, options=FEW)
+    assert other.p_value == pytest.approx(one.p_value, rel=1e-6, abs=1e-12)
+    assert other.parameters["slope"].stderr == pytest.approx(2.0**20 * one.parameters["slope"].stderr)
+
+
+@pytest.mark.parametrize("uncertainty", ["hac", "bootstrap", "permutation"])
+def test_equal_weights_change_nothing(uncertainty: str) -> None:
+    t, y = _series()
+    plain = fit_trend(t, y, uncertainty=uncertainty, options=FEW)
+    weighted = fit_trend(t, y, weights=np.full(t.size, 3.0), uncertainty=uncertainty, options=FEW)
+    assert weighted.p_value == pytest.approx(plain.p_value, rel=1e-6)
+    assert weighted.parameters["slope"].stderr == pytest.approx(plain.parameters["slope"].stderr, rel=1e-6)
+
+
+@pytest.mark.parametrize("uncertainty", UNCERTAINTIES)
+@pytest.mark.parametrize("n", [2, 3, 5])
+def test_few_points_and_points_without_noise_fall_back_to_the_formula(uncertainty: str, n: int) -> None:
+    t = np.arange(float(n))
+    for y in (2.0 * t, 2.0 * t + np.resize([0.1, -0.1], n)):
+        answer = fit_trend(t, y, uncertainty=uncertainty, options=FEW)
+        default = fit_trend(t, y)
+        assert answer.parameters == default.parameters
+        assert answer.uncertainty == default.uncertainty
+
+
+def test_unknown_methods_and_counts_of_resamples_are_refused() -> None:
+    with pytest.raises(InputError, match="did you mean 'bootstrap'"):
+        fit_trend(*_series(), uncertainty="bootstraps")
+    with pytest.raises(InputError, match="resamples: must lie between 99 and 10 000"):
+        RobustOptions(resamples=10)
+
+
+@pytest.mark.parametrize("uncertainty", ["bootstrap", "permutation"])
+def test_a_cancelled_caller_does_not_wait_for_the_resamples(uncertainty: str) -> None:
+    flag = np.ones(1, dtype=np.uint8)
+    with cancelled_by(flag), pytest.raises(Cancelled):
+        fit_trend(*_series(), uncertainty=uncertainty, options=dataclasses.replace(FEW, resamples=10_000))
+
+
+def test_a_fine_line_among_scattered_readings_is_not_called_a_trend() -> None:
+    fooled = 0
+    for seed in range(300):
+        y = np.random.default_rng([8, seed]).normal(size=80)
+        fooled += fit_trend(np.arange(80.0), y).p_value < 0.001
+    assert fooled <= most(300, 0.001)
+
+
+def test_an_inlier_threshold_below_the_noise_proves_no_trend() -> None:
+    fooled = 0
+    for seed in range(200):
+        y = np.random.default_rng([9, seed]).normal(size=60)
+        fooled += fit_trend(np.arange(60.0), y, method="ransac", threshold=0.5).p_value < 0.05
+    assert fooled <= most(200, 0.05)
