@@ -7,14 +7,15 @@ from estimators.arrays import InputError
 from estimators.consensus.presets import PRESETS, Preset
 from estimators.options import RobustOptions
 from estimators.result import Estimate, NoFit, NoFitReason, Notice, NoticeCode
-from estimators.trends.comparison import Difference
-from estimators.trends.crossing import Crossing
 from estimators.trends.fit import fit_trend
 from estimators.trends.many import fit_trends
 from estimators.trends.models import MODELS, TrendModel
-from estimators.trends.regime import Regime
+from estimators.trends.prediction import Prediction
+from estimators.trends.questions.comparison import Difference
+from estimators.trends.questions.crossing import Crossing
+from estimators.trends.regimes.regime import Regime
 from estimators.trends.table import TrendTable
-from estimators.trends.trend import Prediction, Trend
+from estimators.trends.trend import Trend
 
 __all__ = [
     "Crossing",

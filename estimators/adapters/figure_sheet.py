@@ -11,10 +11,11 @@ from matplotlib import dates
 
 from estimators.arrays import BoolArray, FloatArray, Reason
 from estimators.time_axis import TimeAxis
-from estimators.trends.units import moment_text
+from estimators.trends.presentation.units import moment_text
 
 if TYPE_CHECKING:
-    from estimators.trends.trend import Prediction, Trend
+    from estimators.trends.prediction import Prediction
+    from estimators.trends.trend import Trend
 
 # matplotlib's module of dates has no types.
 mdates: Any = dates

@@ -28,8 +28,8 @@ from estimators.adapters.figure_strokes import (
     dress_axes,
 )
 from estimators.arrays import InputError
-from estimators.trends.units import rounded, slope_unit
-from estimators.trends.wording import WORDS
+from estimators.trends.presentation.units import rounded, slope_unit
+from estimators.trends.presentation.wording import WORDS
 
 if TYPE_CHECKING:
     from estimators.trends.trend import Trend

@@ -15,7 +15,7 @@ from estimators.arrays import BoolArray, FloatArray, InputError
 from estimators.options import RobustOptions
 from estimators.trends.fit import fit_trend
 from estimators.trends.many import fit_trends
-from estimators.trends.units import moment_text
+from estimators.trends.presentation.units import moment_text
 
 SECONDS_PER = {"second": 1.0, "minute": 60.0, "hour": 3600.0, "day": 86400.0, "year": 365.25 * 86400.0}
 """Units in which a slope over points in time can be stated; the year is the Julian one."""

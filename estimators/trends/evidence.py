@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from estimators.trends.units import significant
+from estimators.trends.presentation.units import significant
 
 
 @dataclass(frozen=True, slots=True)

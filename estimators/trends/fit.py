@@ -15,10 +15,10 @@ from estimators.result import NoFit, NoFitReason
 from estimators.series import as_series
 from estimators.trends.arguments import check_fraction, check_positive, check_seed, look_up
 from estimators.trends.bases.settings import Basis, check_basis
-from estimators.trends.crossing import check_values
 from estimators.trends.exponential.domain import NOISE_CHOICES
 from estimators.trends.magnitude import in_value_units, value_unit
 from estimators.trends.models import MODELS, TrendModel
+from estimators.trends.questions.crossing import check_values
 from estimators.trends.regimes.present import REGIMES, fit_regime
 from estimators.trends.request import Request, no_fit
 from estimators.trends.resampling import UNCERTAINTIES

@@ -18,7 +18,7 @@ from estimators.consensus.search.structure import StructureSearch
 from estimators.consensus.termination import Adaptive
 from estimators.options import RobustOptions
 from estimators.result import NoFit
-from estimators.trends.line import Frame
+from estimators.trends.line.frame import Frame
 from estimators.trends.trend import RunnerUp
 
 LEAST_MARGIN = 3.0

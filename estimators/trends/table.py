@@ -16,7 +16,7 @@ import numpy as np
 from estimators.arrays import BoolArray, FloatArray, InputError, IntArray
 from estimators.result import NoFit, Points
 from estimators.trends.batch.source import Source
-from estimators.trends.presentation import numbers_to_json, time_to_json
+from estimators.trends.presentation.json_values import numbers_to_json, time_to_json
 from estimators.trends.trend import Trend
 
 if TYPE_CHECKING:

@@ -12,65 +12,32 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from estimators.arrays import ArrayLike, FloatArray, InputError
-from estimators.inference.intervals import student_quantile
+from estimators.arrays import ArrayLike, FloatArray
 from estimators.result import (
     Consensus,
     Estimate,
     Notice,
-    NoticeCode,
     Points,
     Uncertainty,
-    notice,
 )
 from estimators.time_axis import TimeAxis
-from estimators.trends import comparison, crossing, presentation, slopes
 from estimators.trends.bases.design import Season
-from estimators.trends.bases.own import bands_with_columns
-from estimators.trends.comparison import Difference
-from estimators.trends.crossing import Crossing
 from estimators.trends.curve import Curve
 from estimators.trends.evidence import Evidence
 from estimators.trends.exponential.domain import Noise
-from estimators.trends.regime import Regime
-from estimators.trends.unpack import plain_column
+from estimators.trends.prediction import Prediction, predict
+from estimators.trends.presentation import layout
+from estimators.trends.presentation.dictionary import trend_to_dict
+from estimators.trends.presentation.frame import trend_to_frame
+from estimators.trends.presentation.report import describe
+from estimators.trends.questions import comparison, crossing, slopes
+from estimators.trends.questions.comparison import Difference
+from estimators.trends.questions.crossing import Crossing
+from estimators.trends.regimes.regime import Regime
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
-
-
-@dataclass(frozen=True, slots=True)
-class Prediction:
-    """The trend at requested times, with two bands.
-
-    Attributes
-    ----------
-    time : ndarray, shape (k,)
-        As asked for (numbers or datetime64[ns]).
-    value : ndarray of float64, shape (k,)
-        The trend.
-    confidence_low, confidence_high : ndarray of float64, shape (k,)
-        Where the *trend* lies; NaN where the data leave no way to tell.
-    prediction_low, prediction_high : ndarray of float64, shape (k,)
-        Where a *new inlier* of mean weight will lie.
-    level : float
-    notices : tuple of Notice
-        ``extrapolation`` where a time lies outside of the data.
-    """
-
-    time: np.ndarray[Any, Any]
-    value: FloatArray
-    confidence_low: FloatArray
-    confidence_high: FloatArray
-    prediction_low: FloatArray
-    prediction_high: FloatArray
-    level: float
-    notices: tuple[Notice, ...] = ()
-
-    def to_dict(self) -> dict[str, Any]:
-        """JSON-safe columns."""
-        return presentation.prediction_to_dict(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,32 +163,7 @@ class Trend:
         >>> float(round(trend.predict([30.0]).value[0], 6))
         63.0
         """
-        wanted = self.uncertainty.level if level is None else float(level)
-        if not 0 < wanted < 1:
-            raise InputError("level", "must lie between 0 and 1, both excluded")
-        asked, internal = self.axis.read(plain_column(times))
-        curve = self.geometry
-        quantile = student_quantile(wanted, self.uncertainty.dof)
-        if columns is None:
-            bands = curve.bands(internal, quantile)
-        else:
-            bands = bands_with_columns(curve, internal, quantile, columns)
-        outside = (internal < curve.span[0]) | (internal > curve.span[1])
-        notices = (
-            (notice(NoticeCode.extrapolation, times=int(np.count_nonzero(outside))),)
-            if np.any(outside)
-            else ()
-        )
-        return Prediction(
-            time=asked,
-            value=bands.value,
-            confidence_low=bands.confidence_low,
-            confidence_high=bands.confidence_high,
-            prediction_low=bands.prediction_low,
-            prediction_high=bands.prediction_high,
-            level=wanted,
-            notices=notices,
-        )
+        return predict(self, times, level, columns)
 
     def time_to(
         self,
@@ -291,7 +233,7 @@ class Trend:
 
     def summary(self) -> str:
         """Text for people: the trend, its uncertainty, the outliers and the warnings."""
-        return presentation.summary(self)
+        return layout.to_text(describe(self))
 
     def to_dict(self, *, points: bool = True) -> dict[str, Any]:
         """JSON-safe form, the same as the service answers.
@@ -301,7 +243,7 @@ class Trend:
         points : bool
             Whether to include the columns per input row.
         """
-        return presentation.trend_to_dict(self, points=points)
+        return trend_to_dict(self, points=points)
 
     def to_frame(self) -> pd.DataFrame:
         """One row per input row: time, value, fit, bands, inlier, probability, residual, reason.
@@ -311,7 +253,7 @@ class Trend:
         ImportError
             If pandas is not installed (extra ``[pandas]``).
         """
-        return presentation.trend_to_frame(self)
+        return trend_to_frame(self)
 
     def plot(self, **style: Any) -> Figure:
         """Picture of the series, the trend, its bands and the outliers (extra ``[plot]``).
@@ -332,4 +274,4 @@ class Trend:
         return trend_figure(self, **style)
 
     def _repr_html_(self) -> str:
-        return presentation.to_html(self)
+        return layout.to_html(describe(self))

@@ -14,15 +14,16 @@ import typer
 
 import estimators
 from estimators import InputError, NoFit, Trend
-from estimators.trends.layout import to_text
-from estimators.trends.report import describe
+from estimators.trends.presentation.layout import to_text
+from estimators.trends.presentation.report import describe
 from service.cli.moments import read_moment_like
 from service.cli.streams import NO_TREND, answers, fail, remark
 from service.cli.tables import show_report
 from service.codecs.csv import write_csv
 from service.codecs.json import dumps, write_json
 from service.codecs.table import Table, TableError, read_delimiter, read_table
-from service.schemas.options import AnswerQuery, TimeUnit, read_periods
+from service.schemas.fields import TimeUnit
+from service.schemas.options import AnswerQuery, read_periods
 
 if TYPE_CHECKING:
     from estimators.adapters.plotting import FigureFormat, Theme

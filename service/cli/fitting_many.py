@@ -34,7 +34,8 @@ from service.codecs.batch.tables import write_arrow, write_arrow_file, write_csv
 from service.codecs.table import TableError, read_delimiter
 from service.codecs.table_text import find_delimiter
 from service.errors import Problem
-from service.schemas.options import FitArguments, TimeUnit
+from service.schemas.fields import TimeUnit
+from service.schemas.options import FitArguments
 
 WRITERS: dict[str, Callable[[Answer], Iterator[bytes]]] = {
     ".csv": write_csv,

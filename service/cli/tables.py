@@ -1,4 +1,4 @@
-"""A trend's report in a terminal: the words of :mod:`estimators.trends.report`, set by rich."""
+"""A trend's report in a terminal: the words of :mod:`estimators.trends.presentation.report`, set by rich."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from rich.rule import Rule
 from rich.table import Table
 from rich.text import Text
 
-from estimators.trends.layout import estimate_rows, outlier_titles, prediction_titles
-from estimators.trends.report import Report
+from estimators.trends.presentation.layout import estimate_rows, outlier_titles, prediction_titles
+from estimators.trends.presentation.report import Report
 
 
 def show_report(console: Console, report: Report) -> None:

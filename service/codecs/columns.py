@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from service.errors import invalid_value
-from service.schemas.options import TimeUnit
+from service.schemas.fields import TimeUnit
 
 Times: TypeAlias = npt.NDArray[np.float64] | npt.NDArray[np.int64] | npt.NDArray[np.datetime64]
 WireTimes: TypeAlias = Times | list[Any]

@@ -17,12 +17,13 @@ import numpy.typing as npt
 import orjson
 
 from estimators import Trend
-from estimators.trends.presentation import fitted_values
+from estimators.trends.presentation.dictionary import fitted_values
 from service.codecs.arguments import read_arguments
 from service.codecs.columns import Columns, TimeForm, Times, from_epoch
 from service.codecs.times import parse_iso
 from service.errors import FieldError, Problem, ProblemType, invalid_value
-from service.schemas.options import AnswerQuery, FitArguments, TimeUnit, TrendQuery
+from service.schemas.fields import TimeUnit
+from service.schemas.options import AnswerQuery, FitArguments, TrendQuery
 
 HEADER = (
     "time",

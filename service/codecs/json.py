@@ -16,19 +16,14 @@ import numpy.typing as npt
 import orjson
 
 from estimators import Trend
-from estimators.trends.presentation import fitted_values
+from estimators.trends.presentation.dictionary import fitted_values
 from service.codecs.arguments import read_arguments
 from service.codecs.columns import Columns, TimeForm, Times, from_epoch
 from service.codecs.moments import write_moments
 from service.codecs.times import parse_iso
 from service.errors import FieldError, Problem, ProblemType, invalid_value, unknown_fields
-from service.schemas.options import (
-    AnswerQuery,
-    FitArguments,
-    TimeUnit,
-    TrendOptions,
-    TrendQuery,
-)
+from service.schemas.fields import TimeUnit
+from service.schemas.options import AnswerQuery, FitArguments, TrendOptions, TrendQuery
 
 COLUMN_FIELDS = ("time", "value", "weight", "predict", "horizon")
 FIELDS = (*COLUMN_FIELDS, *FitArguments.model_fields)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from estimators import Trend
-from estimators.trends.answers import MOMENTS_OF_A_CROSSING, MOMENTS_OF_A_REGIME
+from estimators.trends.presentation.question_forms import MOMENTS_OF_A_CROSSING, MOMENTS_OF_A_REGIME
 from service.codecs.columns import TimeForm
 
 

@@ -11,7 +11,8 @@ from service.codecs.csv import read_csv, write_csv
 from service.codecs.figure import write_png, write_svg
 from service.codecs.json import read_json, write_json
 from service.codecs.negotiation import best_offer, media_type_of
-from service.schemas.options import AnswerFormat, AnswerQuery, FitArguments, TrendQuery
+from service.schemas.fields import AnswerFormat
+from service.schemas.options import AnswerQuery, FitArguments, TrendQuery
 
 Read = Callable[[bytes, TrendQuery], tuple[Columns, FitArguments]]
 Write = Callable[[Trend, Columns, AnswerQuery], bytes]

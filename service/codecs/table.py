@@ -26,7 +26,7 @@ from service.codecs.table_cells import (
 from service.codecs.table_choice import Choice, Headings, choose_columns, names_a_header
 from service.codecs.table_text import DELIMITER_NAMES, TableError, decode, find_delimiter, numbered_rows
 from service.errors import Problem
-from service.schemas.options import TimeUnit
+from service.schemas.fields import TimeUnit
 
 __all__ = ["Table", "TableError", "read_delimiter", "read_table"]
 

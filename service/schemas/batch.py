@@ -11,12 +11,10 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from service.schemas.answers import Answer, NoFitReason, RowReason, WireTime
-from service.schemas.options import (
-    OPTION_PREFIX,
+from service.schemas.fields import (
     AcceptableInliers,
     Confidence,
     CorrectSerialCorrelation,
-    FitArguments,
     Level,
     MaxHypotheses,
     Method,
@@ -29,6 +27,7 @@ from service.schemas.options import (
     Unit,
     WorkBudget,
 )
+from service.schemas.options import OPTION_PREFIX, FitArguments
 
 BatchFormat = Literal["json", "csv", "arrow", "parquet", "ndjson", "geojson"]
 ColumnName = Annotated[str, Field(max_length=1_000)]

@@ -1,6 +1,6 @@
 """Questions about a trend on the wire: how they are asked, and how they are answered.
 
-The answers are key for key what :mod:`estimators.trends.answers` makes.
+The answers are key for key what :mod:`estimators.trends.presentation.questions` makes.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from estimators.arrays import LARGEST_VALUE
-from estimators.trends.crossing import MOST_VALUES
+from estimators.trends.questions.crossing import MOST_VALUES
 
 Moment = int | float | str | None
 

@@ -13,7 +13,7 @@ from typer.testing import CliRunner, Result
 
 import estimators
 from estimators import kernels
-from estimators.trends.report import describe
+from estimators.trends.presentation.report import describe
 from service.cli import app
 from service.cli.tables import show_report
 from tests.trends.made import daily, made_trend

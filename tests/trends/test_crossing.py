@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from estimators import InputError
 from estimators.trends.curve import Bands, LineGeometry
-from estimators.trends.passage import first_passage
+from estimators.trends.questions.passage import first_passage
 from tests.statistics.bounds import fewest
 from tests.trends.contaminated import fitted
 from tests.trends.made import daily, made_trend

@@ -12,7 +12,7 @@ import pytest
 from estimators.result import Estimate
 from estimators.trends.exponential.curve import ExponentialCurve
 from estimators.trends.exponential.derived import derived_estimates, is_open
-from estimators.trends.units import PLAIN, TimeUnit
+from estimators.trends.presentation.units import PLAIN, TimeUnit
 from tests.trends.contaminated import fitted
 from tests.trends.growing import growing
 

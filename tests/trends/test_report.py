@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from estimators.result import NOTICE_MEANINGS, NoticeCode, notice
-from estimators.trends.layout import WIDTH, to_html, to_text
-from estimators.trends.report import describe
+from estimators.trends.presentation.layout import WIDTH, to_html, to_text
+from estimators.trends.presentation.report import describe
 from estimators.trends.trend import RunnerUp
 from tests.trends.made import daily, made_trend
 

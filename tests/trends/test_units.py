@@ -7,7 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from estimators.trends.units import moment_text, natural_unit, p_value_text, percent, rounded, significant
+from estimators.trends.presentation.units import (
+    moment_text,
+    natural_unit,
+    p_value_text,
+    percent,
+    rounded,
+    significant,
+)
 
 VALUES = st.floats(-1e12, 1e12, allow_subnormal=False).filter(lambda value: value == 0 or abs(value) > 1e-12)
 ERRORS = st.floats(1e-15, 1e12)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from estimators.arrays import FloatArray
-from estimators.trends.line import Frame
+from estimators.trends.line.frame import Frame
 
 
 @dataclass(frozen=True, slots=True)

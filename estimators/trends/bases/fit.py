@@ -24,7 +24,7 @@ from estimators.trends.bases.parameters import parameters_of, polynomial_directi
 from estimators.trends.bases.periods import find_periods
 from estimators.trends.bases.settings import periods_of
 from estimators.trends.labels import label_rows
-from estimators.trends.line_fit import fit_line, origin_of, settle_scale
+from estimators.trends.line.fit import fit_line, origin_of, settle_scale
 from estimators.trends.observations import Evidence, collect_notices
 from estimators.trends.quality import fit_quality
 from estimators.trends.request import Request, no_fit

@@ -10,8 +10,8 @@ import numpy as np
 from estimators.trends.bases.curve import BasisCurve
 from estimators.trends.bases.design import Season, polynomial_powers
 from estimators.trends.bases.settings import CALENDAR
-from estimators.trends.line_words import LineWords
-from estimators.trends.units import (
+from estimators.trends.line.words import LineWords
+from estimators.trends.presentation.units import (
     SECOND,
     moment_text,
     natural_unit,
@@ -20,7 +20,7 @@ from estimators.trends.units import (
     significant,
     slope_unit,
 )
-from estimators.trends.words import EstimateLine, Words, estimate_line
+from estimators.trends.presentation.words import EstimateLine, Words, estimate_line
 
 if TYPE_CHECKING:
     from estimators.trends.trend import RunnerUp, Trend

@@ -1,6 +1,6 @@
 """From lines to rows of the table: inference, quality and notices of a slice of series at once.
 
-The arithmetic is that of :mod:`estimators.trends.line_fit`, in the same order: plain functions run here as
+The arithmetic is that of :mod:`estimators.trends.line.fit`, in the same order: plain functions run here as
 compiled twins, quantiles are the same scipy functions on whole columns.
 """
 

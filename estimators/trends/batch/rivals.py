@@ -13,7 +13,7 @@ from estimators.result import Ledger
 from estimators.trends.batch.group import Group, Known
 from estimators.trends.batch.lines import Lines
 from estimators.trends.batch.source import Settings
-from estimators.trends.line import Frame
+from estimators.trends.line.frame import Frame
 from estimators.trends.runner_up import (
     LEAST_MARGIN,
     LEAST_SUPPORT,

@@ -1,8 +1,9 @@
 """Frame, least noise scale and unit of many series, compiled.
 
-The same numbers as :class:`estimators.trends.line.Frame`, :func:`estimators.noise.resolution.scale_floor`
-and :func:`estimators.trends.magnitude.value_unit` give for one. Series with many tied values, which are
-rounded ones, are left to :func:`estimators.noise.resolution.find_quantisation`.
+The same numbers as :class:`estimators.trends.line.frame.Frame`,
+:func:`estimators.noise.resolution.scale_floor` and :func:`estimators.trends.magnitude.value_unit` give for
+one. Series with many tied values, which are rounded ones, are left to
+:func:`estimators.noise.resolution.find_quantisation`.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from estimators.kernels import kernel, ro
 from estimators.noise.resolution import TIED_SHARE, find_quantisation, scale_floor
 from estimators.trends.batch.group import Group
 from estimators.trends.batch.ready import Ready
-from estimators.trends.line_fit import LEAST_FLOOR
+from estimators.trends.line.fit import LEAST_FLOOR
 
 _SAMPLE = 4096
 _ULPS = 4.0

@@ -8,7 +8,7 @@ from scipy.special import chdtri
 
 from estimators.result import Estimate
 from estimators.trends.exponential.curve import ExponentialCurve
-from estimators.trends.units import TimeUnit
+from estimators.trends.presentation.units import TimeUnit
 
 _MOST_EXPONENT = 700.0
 _LEAST_EFFECTIVE = 3.0

@@ -23,9 +23,9 @@ from estimators.trends.exponential.selection import (
     multiplicative_evidence,
 )
 from estimators.trends.observations import input_notices
+from estimators.trends.presentation.units import PLAIN, natural_unit
 from estimators.trends.request import Request, no_fit
 from estimators.trends.trend import RunnerUp, Trend
-from estimators.trends.units import PLAIN, natural_unit
 
 _LEAST_POINTS = 4
 """Readings from which the noise can be told at all: two of them fix the curve."""

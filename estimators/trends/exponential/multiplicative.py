@@ -15,7 +15,7 @@ from estimators.result import NoFit, NoFitReason
 from estimators.series import Series
 from estimators.trends.curve import LineGeometry
 from estimators.trends.exponential.curve import ExponentialCurve
-from estimators.trends.line_fit import fit_line
+from estimators.trends.line.fit import fit_line
 from estimators.trends.request import Request, no_fit
 from estimators.trends.trend import Trend
 

@@ -18,8 +18,8 @@ from estimators.result import Consensus, NoFit, NoFitReason, Uncertainty
 from estimators.trends.exponential.additive import AdditiveFit, find_additive
 from estimators.trends.exponential.curve import ExponentialCurve
 from estimators.trends.labels import label_rows
-from estimators.trends.line import Frame
-from estimators.trends.line_fit import LEAST_FLOOR
+from estimators.trends.line.fit import LEAST_FLOOR
+from estimators.trends.line.frame import Frame
 from estimators.trends.magnitude import in_value_units, value_unit
 from estimators.trends.observations import Evidence, collect_notices
 from estimators.trends.quality import fit_quality

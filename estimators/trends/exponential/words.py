@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from estimators.result import Estimate
-from estimators.trends.units import (
+from estimators.trends.presentation.units import (
     SECOND,
     TimeUnit,
     moment_text,
@@ -16,7 +16,7 @@ from estimators.trends.units import (
     significant,
     slope_unit,
 )
-from estimators.trends.words import EstimateLine, estimate_line
+from estimators.trends.presentation.words import EstimateLine, estimate_line
 
 if TYPE_CHECKING:
     from estimators.trends.trend import RunnerUp, Trend

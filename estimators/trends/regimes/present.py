@@ -15,9 +15,9 @@ from estimators.inference.intervals import student_quantile
 from estimators.noise.resolution import find_quantisation, scale_floor
 from estimators.result import Estimate, NoFit, NoticeCode, notice
 from estimators.series import Series
-from estimators.trends.line_fit import LEAST_FLOOR, fit_line
-from estimators.trends.regime import Regime
+from estimators.trends.line.fit import LEAST_FLOOR, fit_line
 from estimators.trends.regimes.changes import find_changes
+from estimators.trends.regimes.regime import Regime
 from estimators.trends.request import Request
 from estimators.trends.trend import Trend
 

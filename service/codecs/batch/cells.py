@@ -21,7 +21,7 @@ from service.codecs.columns import TimeForm, Times, from_epoch
 from service.codecs.csv import LONGEST_NUMBER, MISSING
 from service.codecs.times import parse_iso
 from service.errors import Problem, invalid_value
-from service.schemas.options import TimeUnit
+from service.schemas.fields import TimeUnit
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]

@@ -18,7 +18,7 @@ from service.codecs.batch.cells import Floats, Integers, counted_from, name_code
 from service.codecs.columns import UNIT_NANOSECONDS, Columns, TimeForm, Times
 from service.codecs.limits import check_columns
 from service.errors import Problem, ProblemType, invalid_value
-from service.schemas.options import TimeUnit
+from service.schemas.fields import TimeUnit
 
 REQUIRED = ("series", "time", "value")
 OPTIONAL = ("weight", "lat", "lon")

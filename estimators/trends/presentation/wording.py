@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 from estimators.trends.bases.words import BasisWords, StraightWords
 from estimators.trends.exponential.words import ExponentialWords
-from estimators.trends.words import Words
+from estimators.trends.presentation.words import Words
 
 WORDS: Mapping[str, Words] = MappingProxyType(
     {

@@ -1,7 +1,7 @@
 """What a trend says to people, in words: :func:`describe` turns an answer into a :class:`Report`.
 
-A report is short strings; :mod:`estimators.trends.layout` sets them as text and as HTML, and the command
-line sets the same ones in colour.
+A report is short strings; :mod:`estimators.trends.presentation.layout` sets them as text and as HTML, and the
+command line sets the same ones in colour.
 """
 
 from __future__ import annotations
@@ -14,13 +14,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from estimators.arrays import IntArray
-from estimators.trends.facts import facts, notice_lines
-from estimators.trends.units import moment_text, rounded, significant
-from estimators.trends.wording import WORDS
-from estimators.trends.words import EstimateLine, interval_text
+from estimators.trends.presentation.facts import facts, notice_lines
+from estimators.trends.presentation.units import moment_text, rounded, significant
+from estimators.trends.presentation.wording import WORDS
+from estimators.trends.presentation.words import EstimateLine, interval_text
 
 if TYPE_CHECKING:
-    from estimators.trends.trend import Prediction, Trend
+    from estimators.trends.prediction import Prediction
+    from estimators.trends.trend import Trend
 
 _OUTLIERS_SHOWN = 5
 _PREDICTIONS_SHOWN = 10

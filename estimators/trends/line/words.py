@@ -11,8 +11,15 @@ from estimators.inference.intervals import student_quantile
 from estimators.result import Estimate
 from estimators.time_axis import TimeAxis
 from estimators.trends.curve import LineGeometry
-from estimators.trends.units import SECOND, moment_text, p_value_text, rounded, significant, slope_unit
-from estimators.trends.words import EstimateLine, estimate_line
+from estimators.trends.presentation.units import (
+    SECOND,
+    moment_text,
+    p_value_text,
+    rounded,
+    significant,
+    slope_unit,
+)
+from estimators.trends.presentation.words import EstimateLine, estimate_line
 
 if TYPE_CHECKING:
     from estimators.trends.trend import RunnerUp, Trend

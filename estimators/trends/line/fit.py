@@ -20,7 +20,7 @@ from estimators.regression.influence import INLIERS, influence_sums
 from estimators.result import Consensus, NoFit, NoFitReason, Uncertainty
 from estimators.series import Series
 from estimators.trends.labels import label_rows
-from estimators.trends.line import Frame, line_geometry, line_parameters
+from estimators.trends.line.frame import Frame, line_geometry, line_parameters
 from estimators.trends.observations import Evidence, collect_notices
 from estimators.trends.quality import fit_quality
 from estimators.trends.request import Request, no_fit

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 from estimators.result import Consensus, Notice, NoticeCode, Uncertainty
 from estimators.trends.evidence import evidence_sentence
 from estimators.trends.exponential.domain import noise_sentence
-from estimators.trends.question_words import question_facts
-from estimators.trends.units import percent, significant
-from estimators.trends.wording import WORDS
+from estimators.trends.presentation.question_words import question_facts
+from estimators.trends.presentation.units import percent, significant
+from estimators.trends.presentation.wording import WORDS
 
 if TYPE_CHECKING:
     from estimators.trends.trend import RunnerUp, Trend

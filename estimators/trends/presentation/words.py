@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 from estimators.result import Estimate
-from estimators.trends.units import MISSING, rounded
+from estimators.trends.presentation.units import MISSING, rounded
 
 if TYPE_CHECKING:
     from estimators.trends.trend import RunnerUp, Trend

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from estimators.trends.report import Report
+    from estimators.trends.presentation.report import Report
 
 WIDTH = 80
 _LABEL = 12

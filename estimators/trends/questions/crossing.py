@@ -1,8 +1,8 @@
 """Time to threshold: when a trend reaches a value, how sure that is, and how likely by a horizon.
 
 The interval holds the times at which the confidence band of the trend first touches the value and at which
-the whole band is beyond it (of a line Fieller's; :mod:`estimators.trends.passage`). It may reach back to the
-end of the data ("may be there already") and have no end ("may never get there").
+the whole band is beyond it (of a line Fieller's; :mod:`estimators.trends.questions.passage`). It may reach
+back to the end of the data ("may be there already") and have no end ("may never get there").
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from estimators.arrays import LARGEST_TIME, LARGEST_VALUE, InputError
 from estimators.inference.intervals import student_quantile
 from estimators.time_axis import TimeAxis
 from estimators.trends.curve import Curve
-from estimators.trends.passage import first_passage, last_passage
+from estimators.trends.questions.passage import first_passage, last_passage
 
 if TYPE_CHECKING:
     from estimators.trends.trend import Trend

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from estimators.trends.units import moment_text, percent, rounded, significant, slope_unit
+from estimators.trends.presentation.units import moment_text, percent, rounded, significant, slope_unit
 
 if TYPE_CHECKING:
-    from estimators.trends.crossing import Crossing
-    from estimators.trends.regime import Regime
+    from estimators.trends.questions.crossing import Crossing
+    from estimators.trends.regimes.regime import Regime
     from estimators.trends.trend import Trend
 
 _REGIMES_TOLD = 3

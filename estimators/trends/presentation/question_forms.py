@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from estimators.trends import presentation
+from estimators.trends.presentation.json_values import estimate_to_dict, time_to_json
 
 if TYPE_CHECKING:
-    from estimators.trends.crossing import Crossing
-    from estimators.trends.regime import Regime
+    from estimators.trends.questions.crossing import Crossing
+    from estimators.trends.regimes.regime import Regime
 
 MOMENTS_OF_A_CROSSING = ("time", "low", "high", "horizon")
 MOMENTS_OF_A_REGIME = ("start", "end")
@@ -40,11 +40,11 @@ def regime_to_dict(regime: Regime) -> dict[str, Any]:
         "end": _moment(regime.end),
         "n": regime.n,
         "inliers": regime.inliers,
-        "slope": None if regime.slope is None else presentation.estimate_to_dict(regime.slope),
-        "level": None if regime.level is None else presentation.estimate_to_dict(regime.level),
+        "slope": None if regime.slope is None else estimate_to_dict(regime.slope),
+        "level": None if regime.level is None else estimate_to_dict(regime.level),
     }
 
 
 def _moment(moment: Any) -> Any:
     """Time as a number or ISO 8601."""
-    return None if moment is None else presentation.time_to_json(np.asarray([moment]))[0]
+    return None if moment is None else time_to_json(np.asarray([moment]))[0]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from estimators.arrays import InputError
 from estimators.result import Estimate
-from estimators.trends.units import natural_unit
+from estimators.trends.presentation.units import natural_unit
 
 if TYPE_CHECKING:
     from estimators.trends.trend import Trend

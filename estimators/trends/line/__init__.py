@@ -1,0 +1,1 @@
+"""The straight line: its frame, its fit, its words."""

@@ -1,0 +1,1 @@
+"""How an answer leaves Python: dict, data frame, text and HTML."""
