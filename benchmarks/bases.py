@@ -18,6 +18,15 @@ import statsmodels.api as sm
 from sklearn.linear_model import LinearRegression, RANSACRegressor
 
 from benchmarks.contenders import KNOWN_THRESHOLD
+from benchmarks.kinds import (
+    Contaminated,
+    add_runs,
+    all_but,
+    contiguous_runs,
+    excursion_levels,
+    scattered_rows,
+    with_uniform,
+)
 from estimators import Trend, fit_trend
 from estimators.arrays import BoolArray, FloatArray
 from estimators.trends.bases.design import polynomial_columns, season_columns
@@ -47,11 +56,23 @@ class Shape:
 
 SHAPES = (Shape(2, 0), Shape(4, 0), Shape(1, 1), Shape(1, 2), Shape(1, 3))
 
-Kind = Callable[[int, np.random.Generator], FloatArray]
-KINDS: Mapping[str, Kind] = {
-    "uniform": lambda n, rng: rng.uniform(-60.0, 60.0, n),
-    "shift": lambda n, rng: 4.0 + rng.exponential(15.0, n),
-}
+
+def _shift(t: FloatArray, noise: FloatArray, outliers: int, rng: np.random.Generator) -> Contaminated:
+    """Outliers to one side: 4 + Exp(15) sigma above the trend."""
+    hit = scattered_rows(t.size, outliers, rng)
+    offset = noise.copy()
+    offset[hit] += 4.0 + rng.exponential(15.0, hit.size)
+    return Contaminated(t, offset, all_but(t.size, hit))
+
+
+def _burst(t: FloatArray, noise: FloatArray, outliers: int, rng: np.random.Generator) -> Contaminated:
+    """At most three runs in time, each at a level of its own."""
+    runs = contiguous_runs(t.size, outliers, 3, 0.3, rng)
+    return add_runs(noise.copy(), runs, excursion_levels(len(runs), rng, nearest=8.0, apart=15.0), t)
+
+
+Kind = Callable[[FloatArray, FloatArray, int, np.random.Generator], Contaminated]
+KINDS: Mapping[str, Kind] = {"uniform": with_uniform, "shift": _shift, "burst": _burst}
 Fit = Callable[[Shape, FloatArray, FloatArray], FloatArray]
 
 
@@ -108,11 +129,8 @@ def draw(
     t = np.sort(rng.uniform(0.0, SPAN, n))
     columns = shape.columns(t)
     truth = np.asarray(rng.uniform(-REACH, REACH, columns.shape[0]) @ columns)
-    inlier = np.ones(n, dtype=np.bool_)
-    inlier[rng.permutation(n)[: round(share * n)]] = False
-    y = truth + rng.normal(size=n)
-    y[~inlier] += KINDS[kind](int(np.count_nonzero(~inlier)), rng)
-    return t, y, truth, inlier
+    made = KINDS[kind](t, rng.normal(size=n), round(share * n), rng)
+    return t, truth + made.offset, truth, made.inlier
 
 
 def has_failed(shape: Shape, t: FloatArray, fit: FloatArray, truth: FloatArray, inlier: BoolArray) -> bool:

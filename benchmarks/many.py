@@ -1,8 +1,9 @@
-"""Many series at once: ``fit_trends`` beside a loop of scikit-learn in the same run, and its memory.
+"""``python -m benchmarks.many``: many series at once beside a loop of scikit-learn, and memory.
 
-``python -m benchmarks.many`` prints a table. A repetition times everybody on series of its own, one after the
-other; ratios are medians over the repetitions. Memory is the peak of a fresh process beyond the one before
-the fit, so that what is returned per point counts too where it is asked for.
+A repetition times everybody on series of its own, one after the other; figures are medians over the
+repetitions. Seconds are told by the clock on the wall and in processor time: of a machine that others use
+too, the second says more. Memory is the peak of a fresh process beyond the one before the fit, so that what
+is returned per point counts where it is asked for.
 """
 
 from __future__ import annotations
@@ -15,11 +16,12 @@ import sys
 import tempfile
 import time
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import sklearn
 
 from benchmarks.bed import draw_rng, make_series
 from benchmarks.contenders import KNOWN_THRESHOLD
@@ -32,6 +34,22 @@ SHARE = 0.3
 SKLEARN = "scikit-learn RANSACRegressor"
 _COPIES = 64
 """Different series; a batch repeats them, since drawing takes longer than fitting."""
+
+_OPENING = """# Benchmarks: many series
+
+Every figure on this page was measured by `python -m benchmarks.many`, which rewrites it: `fit_trends` with
+{threads} threads, and a Python loop over scikit-learn's RANSACRegressor ({sklearn}, numpy {numpy}) on the
+same series in the same run; medians of interleaved repetitions. Series have {points} irregular points,
+{share:.0f} % of them uniform outliers as on the [bed of lines](benchmarks.md). The loop is told the threshold
+where `fit_trends` is, else it uses its default. It gives no interval; `fit_trends` always does."""
+_MEMORY_PROSE = """CPU time counts all threads together, so that its ratio is what is gained without
+any. On a machine that is busy otherwise, series per second fall; CPU time changes far less.
+
+## Memory
+
+Peak beyond the input and what was there before, in sizes of the input (times and values). Without labels
+(`points=False`) a table has some 25 numbers per series; labels, probabilities, residuals and reasons are 18
+bytes per point, which are 1.1 sizes of the input."""
 
 _MEMORY = """
 import json, sys, numpy as np
@@ -75,9 +93,9 @@ class ManyCase:
 
 
 CASES = (
-    ManyCase("ransac, threshold given", "ransac", KNOWN_THRESHOLD, 20_000),
-    ManyCase("msac, threshold given", "msac", KNOWN_THRESHOLD, 20_000),
-    ManyCase("auto, with intervals", "auto", None, 4_000),
+    ManyCase("`ransac`, threshold given", "ransac", KNOWN_THRESHOLD, 20_000),
+    ManyCase("`msac`, threshold given", "msac", KNOWN_THRESHOLD, 20_000),
+    ManyCase("`auto`, nothing given", "auto", None, 4_000),
 )
 
 
@@ -93,7 +111,7 @@ class ManySpeed:
     cpu_us : float
         Processor time of a series, all threads together, median.
     times_sklearn : float
-        How many times longer scikit-learn takes for a series by the clock on the wall, median.
+        How many times longer the loop of scikit-learn takes for a series by the clock on the wall, median.
     times_sklearn_cpu : float
         The same in processor time, which a busy machine distorts less; threads bring nothing here.
     """
@@ -171,43 +189,48 @@ def measure_memory(case: ManyCase, *, points: bool, series: int = 50_000) -> flo
 
 
 def to_markdown(speeds: Sequence[ManySpeed], memory: Sequence[tuple[str, float]], threads: int) -> str:
-    """Tables of what was measured."""
+    """Page of what was measured; sizes that nobody could tell are dashes."""
+    opening = _OPENING.format(
+        points=POINTS, share=100.0 * SHARE, threads=threads, sklearn=sklearn.__version__, numpy=np.__version__
+    )
     lines = [
-        f"| {threads} threads, {POINTS} points, {SHARE:.0%} outliers | series per second | CPU per series "
-        "| times scikit-learn | the same in CPU time |",
-        "|---|---|---|---|---|",
+        *opening.splitlines(),
+        "",
+        "| method | series per second | CPU time per series | times as fast as the loop | in CPU time |",
+        "| --- | ---: | ---: | ---: | ---: |",
     ]
     for one in speeds:
         row = f"| {one.case.name} | {one.per_second:,.0f} | {one.cpu_us:.0f} µs | {one.times_sklearn:.0f} "
         row += f"| {one.times_sklearn_cpu:.0f} |"
         lines.append(row)
-    lines += ["", "| memory beyond the input | in sizes of the input |", "|---|---|"]
-    lines += [f"| {name} | {share:.2f} |" for name, share in memory]
-    return "\n".join(lines)
+    lines += ["", *_MEMORY_PROSE.splitlines(), "", "| fit | sizes of the input |", "| --- | ---: |"]
+    for name, sizes in memory:
+        lines.append(f"| {name} | {'-' if np.isnan(sizes) else f'{sizes:.2f}'} |")
+    return "\n".join(lines) + "\n"
 
 
-def main(arguments: list[str] | None = None) -> int:
+def main(arguments: Sequence[str] | None = None) -> int:
     """Command line."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.many", description=__doc__)
+    docs = Path(__file__).resolve().parent.parent / "docs"
     parser.add_argument("--threads", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--repetitions", type=int, default=5)
-    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--seed", type=int, default=1, help="seed of the draws (default 1)")
+    parser.add_argument("--out", type=Path, default=docs, help="folder of benchmarks_many.md")
     chosen = parser.parse_args(arguments)
-    say: Callable[[str], object] = sys.stdout.write
     speeds = [
         measure_many(case, seed=chosen.seed, repetitions=chosen.repetitions, threads=chosen.threads)
         for case in CASES
     ]
     memory = [
-        (
-            f"{CASES[1].name}, {'labels kept' if points else 'points=False'}",
-            measure_memory(CASES[1], points=points),
-        )
+        (f"{case.name}, {'labels kept' if points else 'no labels'}", measure_memory(case, points=points))
+        for case in (CASES[1], CASES[2])
         for points in (False, True)
     ]
-    say(to_markdown(speeds, memory, chosen.threads) + "\n")
+    page = to_markdown(speeds, memory, chosen.threads)
+    (chosen.out / "benchmarks_many.md").write_text(page, encoding="utf-8")
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(main())

@@ -14,6 +14,7 @@ import numpy as np
 from estimators import InputError, RobustOptions, fit_trends
 from service.codecs.batch.answer import Answer, to_record_batch
 from service.codecs.batch.rows import Batch
+from service.codecs.columns import Times
 from service.errors import Problem, invalid_value
 from service.schemas.options import FitArguments, TrendOptions
 
@@ -33,6 +34,7 @@ def answer_batch(
     batch: Batch,
     arguments: FitArguments,
     *,
+    horizon: Times | None,
     points: bool,
     threads: int | None,
     progress: Progress,
@@ -43,6 +45,8 @@ def answer_batch(
     ----------
     batch : Batch
     arguments : FitArguments
+    horizon : ndarray, shape (1,), or None
+        Time by which values are to be reached, as those of the batch.
     points : bool
         Whether rows are labelled in the answer.
     threads : int or None
@@ -62,12 +66,18 @@ def answer_batch(
         form=batch.form,
         has_positions=batch.lat is not None,
         has_points=points,
-        parts=_parts(batch, arguments, points=points, threads=threads, progress=progress),
+        parts=_parts(batch, arguments, horizon, points=points, threads=threads, progress=progress),
     )
 
 
 def _parts(
-    batch: Batch, arguments: FitArguments, *, points: bool, threads: int | None, progress: Progress
+    batch: Batch,
+    arguments: FitArguments,
+    horizon: Times | None,
+    *,
+    points: bool,
+    threads: int | None,
+    progress: Progress,
 ) -> Iterator[Any]:
     total = len(batch.names)
     try:
@@ -98,10 +108,18 @@ def _parts(
                 options=options,
                 points=points,
                 progress=tell,
+                noise=arguments.noise,
+                uncertainty=arguments.uncertainty,
+                degree=arguments.degree,
+                seasonal=arguments.seasonal,
+                harmonics=arguments.harmonics,
+                regime=arguments.regime,
+                reach=arguments.reach,
+                horizon=horizon,
             )
         except InputError as error:
             raise _of_argument(error) from error
-        yield to_record_batch(batch, first, table, points=points)
+        yield to_record_batch(batch, first, table, arguments, points=points, with_horizon=horizon is not None)
     progress(total, total)
 
 

@@ -7,7 +7,6 @@ told so by a flag that kernels look at; it keeps its slot until it has stopped, 
 from __future__ import annotations
 
 import asyncio
-import threading
 import time
 from collections.abc import Awaitable, Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -15,9 +14,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 from starlette.requests import ClientDisconnect
-from structlog.typing import FilteringBoundLogger
 
-from estimators import fit_trend, kernels
 from estimators.consensus.cancellation import Cancelled
 from service.admission import Admission
 from service.errors import Problem, ProblemType
@@ -25,9 +22,6 @@ from service.observability.timing import Stopwatch
 from service.settings import Settings
 
 T = TypeVar("T")
-
-#: How often a request that came too early looks whether the service is ready.
-POLL_SECONDS = 0.02
 
 
 class Patience:
@@ -136,72 +130,3 @@ class Compute:
         if leaving in done:
             raise ClientDisconnect
         raise Problem(ProblemType.deadline_exceeded)
-
-
-class Warmth:
-    """Loads all compiled code in the background, once per process.
-
-    Parameters
-    ----------
-    log : structlog logger
-    """
-
-    def __init__(self, log: FilteringBoundLogger) -> None:
-        self._log = log
-        self._stop = threading.Event()
-        self._ready = threading.Event()
-        self._thread = threading.Thread(target=self._load, name="plumbline-warm", daemon=True)
-        self.loaded = 0
-        self.total = 0
-
-    @property
-    def is_ready(self) -> bool:
-        """Whether a fit would run without compiling anything."""
-        return self._ready.is_set()
-
-    @property
-    def has_failed(self) -> bool:
-        """Whether loading ended without success; the log tells why."""
-        return self._thread.ident is not None and not self._thread.is_alive() and not self.is_ready
-
-    def start(self) -> None:
-        """Begin; returns at once."""
-        self._thread.start()
-
-    async def wait(self, seconds: float) -> None:
-        """Wait until everything is loaded; returns at once in all but the first moments of a process.
-
-        Raises
-        ------
-        Problem
-            503 if that takes longer than some seconds, or has failed.
-        """
-        give_up = time.monotonic() + seconds
-        while not self.is_ready:
-            if self.has_failed or time.monotonic() > give_up:
-                raise self.not_ready()
-            await asyncio.sleep(POLL_SECONDS)
-
-    def not_ready(self) -> Problem:
-        """Problem that says how far loading has come."""
-        if self.has_failed:
-            return Problem(ProblemType.not_ready, "compiled code could not be loaded; the log tells why")
-        detail = f"{self.loaded} of {self.total or 'all'} compiled functions are loaded"
-        return Problem(ProblemType.not_ready, detail, headers={"Retry-After": "1"})
-
-    def stop(self) -> None:
-        """Stop after the kernel that is being loaded."""
-        self._stop.set()
-
-    def _load(self) -> None:
-        start = time.perf_counter()
-        for done, total, name in kernels.warm():
-            self.loaded, self.total = done, total
-            self._log.debug("kernel loaded", kernel=name, done=done, total=total)
-            if self._stop.is_set():
-                return
-        # The first fit imports what is imported late; nobody should wait for that.
-        times = np.arange(32.0)
-        fit_trend(times, np.sin(times))
-        self._ready.set()
-        self._log.info("ready", kernels=self.total, seconds=round(time.perf_counter() - start, 3))

@@ -6,6 +6,7 @@ headers, body limits, API key. All state hangs on the app, so that several can l
 
 from __future__ import annotations
 
+import functools
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
@@ -20,7 +21,7 @@ from starlette.requests import ClientDisconnect
 from service.admission import Admission, BodyBudget, LimitBodies
 from service.api import batch, catalogue, docs, health, trends
 from service.codecs.arguments import from_validation
-from service.compute import Compute, Warmth
+from service.compute import Compute
 from service.errors import Problem, ProblemType
 from service.observability.logs import make_logger, uvicorn_log_config
 from service.observability.metrics import Metrics
@@ -29,6 +30,7 @@ from service.openapi import describe
 from service.security.headers import SECURITY_HEADERS, SecurityHeaders
 from service.security.keys import RequireKey
 from service.settings import Settings, load_settings
+from service.warmth import Warmth
 
 #: What web servers log for a caller who left before the answer; it is never sent.
 CLIENT_CLOSED_REQUEST = 499
@@ -98,8 +100,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     for part in (trends, batch, catalogue, health, docs):
         app.include_router(part.router)
     _answer_errors(app)
-    document = describe(app)
-    app.openapi = lambda: document  # type: ignore[method-assign]
+    # Made when it is asked for: the first fit does not wait for it.
+    app.openapi = functools.cache(lambda: describe(app))  # type: ignore[method-assign]
     return app
 
 

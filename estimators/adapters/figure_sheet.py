@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib import dates
 
-from estimators.arrays import BoolArray, FloatArray, Reason
+from estimators.adapters.figure_curves import drawn_rows, fine_times
+from estimators.arrays import BoolArray, FloatArray, IntArray, Reason
 from estimators.time_axis import TimeAxis
 from estimators.trends.presentation.units import moment_text
 
@@ -20,10 +22,11 @@ if TYPE_CHECKING:
 # matplotlib's module of dates has no types.
 mdates: Any = dates
 
-LINE_STEPS = 128
 # Outliers may enlarge the frame by this share of the trend's height on either side: it keeps 45 %.
 ROOM_FOR_OUTLIERS = 0.6
 ROOM_FOR_BANDS = 0.35
+
+_CURVES = ("value", "confidence_low", "confidence_high", "prediction_low", "prediction_high")
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +106,8 @@ class Sheet:
         Exactly one of them holds; unused are rows of weight 0.
     curves : Prediction
         Trend and bands at internal times, ascending: the span of the data and whatever is predicted.
+    cycle_px : float
+        Width of a cycle of the shortest season; infinite where there is none.
     low, high : float
         Limits of the values.
     """
@@ -118,6 +123,7 @@ class Sheet:
     outlier: BoolArray
     unused: BoolArray
     curves: Prediction
+    cycle_px: float
     low: float
     high: float
 
@@ -131,11 +137,14 @@ class Sheet:
         unused = ~inlier & ((codes == Reason.zero_weight) | (codes == Reason.earlier_regime))
         y = trend.values[drawn]
         probability = trend.points.probability[drawn]
-        grid = _time_grid(trend)
+        grid = fine_times(trend, width_px)
         clock = Clock.of(trend)
         # On internal times, since the caller's may be too large for floats to tell neighbours apart.
         curves = dataclasses.replace(trend, axis=TimeAxis("number", 0.0)).predict(grid)
         low, high = _frame(curves, y[inlier], y[~inlier])
+        pixel = (high - low) / height_px
+        rows = drawn_rows(grid, _in_pixels(curves, low, high, pixel), trend.geometry.span, width_px)
+        season = min((season.period for season in trend.seasons), default=math.inf)
         return cls(
             palette=palette,
             width_px=width_px,
@@ -147,7 +156,8 @@ class Sheet:
             inlier=inlier,
             outlier=~inlier & ~unused,
             unused=unused,
-            curves=curves,
+            curves=_at_rows(curves, rows),
+            cycle_px=width_px * season / float(grid[-1] - grid[0]) if grid[-1] > grid[0] else math.inf,
             low=low,
             high=high,
         )
@@ -158,17 +168,16 @@ class Sheet:
         return self.width_px < 560 or self.height_px < 320
 
 
-def _time_grid(trend: Trend) -> FloatArray:
-    """Lay out the internal times of the curves: the span of the data and whatever is predicted."""
-    first, last = trend.geometry.span
-    ends = [first, last]
-    if trend.prediction is not None:
-        asked = trend.axis.to_internal(trend.prediction.time)
-        ends += asked[np.isfinite(asked)].tolist()
-    inside = np.linspace(first, last, LINE_STEPS)
-    before = np.linspace(min(ends), first, LINE_STEPS)[:-1] if min(ends) < first else np.empty(0)
-    after = np.linspace(last, max(ends), LINE_STEPS)[1:] if max(ends) > last else np.empty(0)
-    return np.concatenate([before, inside, after])
+def _in_pixels(curves: Prediction, low: float, high: float, pixel: float) -> FloatArray:
+    """Trend and bands in pixels, shape (5, k), cut off a frame's height beyond the frame."""
+    values = np.vstack([getattr(curves, name) for name in _CURVES])
+    reach = high - low
+    return np.clip(values - low, -reach, 2.0 * reach) / pixel
+
+
+def _at_rows(curves: Prediction, rows: IntArray) -> Prediction:
+    picked = {name: getattr(curves, name)[rows] for name in ("time", *_CURVES)}
+    return dataclasses.replace(curves, **picked)
 
 
 def _frame(curves: Prediction, inliers: FloatArray, others: FloatArray) -> tuple[float, float]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,6 +25,13 @@ if TYPE_CHECKING:
 MAX_MARKERS = 3_000
 # Labels at least this certain are drawn with so much of their colour, the rest being paper.
 _CERTAINTIES = ((0.9, 1.0), (0.6, 0.55), (0.0, 0.25))
+# A cross is all outline: paler than this, it is no longer seen.
+_PALEST_CROSS = 0.45
+# Cycles narrower than this many pixels are drawn with a finer line; those that are hardly told apart, pale.
+_NARROW_CYCLE_PX, _MERGED_CYCLE_PX = 24.0, 4.0
+_PX_TO_PT = 0.75
+# Mean width of a bold letter, over its height, with room for the numbers left of the axis.
+_LETTER_EM = 0.72
 _DASHES = (0, (4, 2.5))
 _DOTS = (0, (1, 1.8))
 
@@ -34,7 +43,7 @@ def draw_points(axes: Axes, sheet: Sheet) -> list[Artist]:
     kinds = (
         (sheet.unused, ".", palette.quiet, "not in the fit", 1.8),
         (sheet.inlier, "o", palette.inlier, "inliers", 2.0),
-        (sheet.outlier, "x", palette.outlier, "outliers", 2.5),
+        (sheet.outlier, "x", palette.outlier, "outliers", 3.2),
     )
     entries: list[Artist] = []
     for chosen, marker, color, name, layer in kinds:
@@ -69,7 +78,8 @@ def _draw_markers(axes: Axes, sheet: Sheet, rows: IntArray, marker: str, color: 
         upper = least
         if not here.size:
             continue
-        face = _mixed(color, sheet.palette.paper, strength)
+        seen = max(strength, _PALEST_CROSS) if marker == "x" else strength
+        face = _mixed(color, sheet.palette.paper, seen)
         outline = face if marker == "x" or dense else color
         axes.plot(
             sheet.x[here],
@@ -123,13 +133,17 @@ def draw_lines(axes: Axes, trend: Trend, sheet: Sheet) -> list[Artist]:
     grid, value = sheet.curves.time, sheet.curves.value
     x = sheet.clock.draw(grid)
     inside = (grid >= first) & (grid <= last)
-    axes.plot(x[inside], value[inside], color=ink, linewidth=1.8, zorder=3)
-    entries: list[Artist] = [_entry("trend", linestyle="-", color=ink, linewidth=1.8)]
+    width = 1.8 if sheet.cycle_px >= _NARROW_CYCLE_PX else 1.2
+    # Strokes side by side are an area, under which the points are still to be seen.
+    alpha = 1.0 if sheet.cycle_px >= _MERGED_CYCLE_PX else 0.4
+    axes.plot(x[inside], value[inside], color=ink, linewidth=width, alpha=alpha, zorder=3)
+    entries: list[Artist] = [_entry("trend", linestyle="-", color=ink, linewidth=width)]
     outside = [part for part in (grid <= first, grid >= last) if np.count_nonzero(part) > 1]
     for part in outside:
-        axes.plot(x[part], value[part], color=ink, linewidth=1.5, linestyle=_DASHES, zorder=3)
+        look: dict[str, Any] = {"color": ink, "linewidth": min(1.5, width), "linestyle": _DASHES}
+        axes.plot(x[part], value[part], alpha=alpha, zorder=3, **look)
     if outside:
-        entries.append(_entry("extrapolated", linestyle=_DASHES, color=ink, linewidth=1.5))
+        entries.append(_entry("extrapolated", linestyle=_DASHES, color=ink, linewidth=min(1.5, width)))
     entries += _draw_predicted(axes, trend, sheet)
     entries += _draw_runner_up(axes, trend, sheet)
     return entries
@@ -203,7 +217,7 @@ def dress_axes(
     axes.set_facecolor(palette.paper)
     axes.set_ylim(sheet.low, sheet.high)
     x = sheet.clock.draw(sheet.curves.time)
-    margin = 0.02 * float(x[-1] - x[0])
+    margin = 0.02 * float(x[-1] - x[0]) or 1.0
     axes.set_xlim(float(x[0]) - margin, float(x[-1]) + margin)
     for side in ("top", "right", "left"):
         axes.spines[side].set_visible(False)
@@ -222,12 +236,19 @@ def dress_axes(
     # A dollar sign in a caller's text is a dollar sign: nothing is set as mathematics.
     if heading:
         axes.set_title(
-            heading, loc="left", color=palette.ink, fontsize=size + 1.5, fontweight="bold", parse_math=False
-        )
+            _broken(heading, int(sheet.width_px * _PX_TO_PT / (_LETTER_EM * (size + 1.5)))),
+            loc="left", color=palette.ink, fontsize=size + 1.5, fontweight="bold", parse_math=False,
+        )  # fmt: skip
     if name := time_label or sheet.clock.label:
         axes.set_xlabel(name, color=palette.quiet, fontsize=size, loc="right", parse_math=False)
     if value_label:
         axes.set_ylabel(value_label, color=palette.quiet, fontsize=size, loc="top", parse_math=False)
+
+
+def _broken(heading: str, letters: int) -> str:
+    """Break a heading that is too long into lines of about equal length."""
+    lines = math.ceil(len(heading) / letters)
+    return heading if lines < 2 else textwrap.fill(heading, min(letters, math.ceil(len(heading) / lines) + 2))
 
 
 def draw_legend(figure: Figure, entries: list[Artist], sheet: Sheet) -> None:

@@ -28,7 +28,7 @@ from estimators.adapters.figure_strokes import (
     dress_axes,
 )
 from estimators.arrays import InputError
-from estimators.trends.presentation.units import rounded, slope_unit
+from estimators.trends.presentation.units import PLAIN, rounded, slope_unit
 from estimators.trends.presentation.wording import WORDS
 
 if TYPE_CHECKING:
@@ -151,17 +151,21 @@ def _settings() -> Iterator[None]:
         yield
 
 
-_HEADLINES: Mapping[str, tuple[str, str]] = {"line": ("slope", "Slope"), "exponential": ("rate", "Rate")}
-"""Parameter per unit of time that a picture of a shape announces, and its word; else its equation."""
+_HEADLINES: Mapping[str, tuple[str, str]] = {
+    "line": ("slope", "Slope"),
+    "constant": ("level", "Level"),
+    "linear": ("slope", "Mean slope"),
+    "exponential": ("rate", "Rate"),
+}
+"""Parameter that a picture of a shape announces, and its word; else its equation."""
 
 
 def _headline(trend: Trend) -> str:
     """Say in one line what the picture shows."""
-    title = _HEADLINES.get(trend.model)
-    if title is None:
+    name, word = _HEADLINES.get(trend.model, ("", ""))
+    if name not in trend.parameters:
         return WORDS[trend.model].equation(trend, "t", "y")
-    name, word = title
-    slope, unit = trend.parameters[name], slope_unit(trend)
+    slope, unit = trend.parameters[name], PLAIN if name == "level" else slope_unit(trend)
     stderr = None if slope.stderr is None else slope.stderr * unit.seconds
     text = f"{word} {rounded(slope.value * unit.seconds, stderr)}{unit.per}"
     if slope.low is None or slope.high is None:

@@ -52,7 +52,7 @@ from estimators.consensus.scan import (
     scan_models,
     value_of,
 )
-from estimators.consensus.solve import solve_exactly
+from estimators.consensus.solve import solve_exactly, solve_two
 from estimators.consensus.stopping import (
     clean_probability_compiled,
     draws_needed_compiled,
@@ -81,6 +81,9 @@ def _needed_before(row: Row, n: int, s: int) -> int:
 @device
 def _solve_block(raw: Rows, count: int, room: Room, counts: IntArray) -> None:
     """Models through the samples of a block; the usable ones are alive."""
+    if raw.columns.shape[0] == 2:
+        _solve_lines(raw, count, room.samples, room.thetas, room.scan.alive, counts)
+        return
     for k in range(count):
         theta = room.thetas[k]
         room.scan.alive[k] = 0
@@ -91,6 +94,24 @@ def _solve_block(raw: Rows, count: int, room: Room, counts: IntArray) -> None:
         else:
             counts[SCORED] += 1
             room.scan.alive[k] = 1
+
+
+@device
+def _solve_lines(
+    raw: Rows, count: int, samples: IntArray, thetas: FloatArray, alive: CodeArray, counts: IntArray
+) -> None:
+    """Run :func:`_solve_block` for two columns; a view of a row would cost more than its line."""
+    for k in range(count):
+        sound, first, second = solve_two(raw, samples[k, 0], samples[k, 1])
+        alive[k] = 0
+        if not sound:
+            counts[DEGENERATE] += 1
+        elif not (math.isfinite(first) and math.isfinite(second)):
+            counts[INVALID] += 1
+        else:
+            counts[SCORED] += 1
+            alive[k] = 1
+            thetas[k, 0], thetas[k, 1] = first, second
 
 
 @device

@@ -33,6 +33,9 @@ def solve_exactly(rows: Rows, sample: IntArray, system: FloatArray, theta: Float
         Written.
     """
     p = theta.size
+    if p == 2:
+        sound, theta[0], theta[1] = solve_two(rows, sample[0], sample[1])
+        return sound
     largest = 0.0
     for i in range(p):
         for j in range(p):
@@ -62,6 +65,28 @@ def solve_exactly(rows: Rows, sample: IntArray, system: FloatArray, theta: Float
 
 
 @device
+def solve_two(rows: Rows, i: int, k: int) -> tuple[bool, float, float]:
+    """Eliminate as :func:`solve_exactly` does, for points i and k of two columns, in registers.
+
+    Returns whether the sample is sound, and the two coefficients.
+    """
+    a0, a1, a2 = rows.columns[0, rows.base + i], rows.columns[1, rows.base + i], rows.y[i]
+    b0, b1, b2 = rows.columns[0, rows.base + k], rows.columns[1, rows.base + k], rows.y[k]
+    least = RANK_TOLERANCE * max(abs(a0), abs(a1), abs(b0), abs(b1))
+    if abs(b0) > abs(a0):
+        a0, a1, a2, b0, b1, b2 = b0, b1, b2, a0, a1, a2
+    if not abs(a0) > least:
+        return False, 0.0, 0.0
+    factor = b0 / a0
+    b1 -= factor * a1
+    b2 -= factor * a2
+    if not abs(b1) > least:
+        return False, 0.0, 0.0
+    second = b2 / b1
+    return True, (a2 - a1 * second) / a0, second
+
+
+@device
 def fit_members(
     rows: Rows, members: IntArray, count: int, start: FloatArray, system: FloatArray, theta: FloatArray
 ) -> bool:
@@ -76,20 +101,19 @@ def fit_members(
         False, with ``theta`` equal to ``start``, if the members do not determine a model.
     """
     p = start.size
+    if p == 2:
+        return _fit_two(rows, members, count, start, theta)
     for i in range(p):
         theta[i] = start[i]
         for j in range(p + 1):
             system[i, j] = 0.0
-    if p == 2:
-        _accumulate_two(rows, members, count, start, system)
-    else:
-        for m in range(count):
-            r = residual_at(rows, start, members[m])
-            for i in range(p):
-                x = rows.columns[i, rows.base + members[m]]
-                system[i, p] += x * r
-                for j in range(i + 1):
-                    system[i, j] += x * rows.columns[j, rows.base + members[m]]
+    for m in range(count):
+        r = residual_at(rows, start, members[m])
+        for i in range(p):
+            x = rows.columns[i, rows.base + members[m]]
+            system[i, p] += x * r
+            for j in range(i + 1):
+                system[i, j] += x * rows.columns[j, rows.base + members[m]]
     if not _factor(system, p):
         return False
     for i in range(p):
@@ -109,9 +133,10 @@ def fit_members(
 
 
 @device
-def _accumulate_two(rows: Rows, members: IntArray, count: int, start: FloatArray, system: FloatArray) -> None:
-    """Sum the normal equations of two columns in registers."""
+def _fit_two(rows: Rows, members: IntArray, count: int, start: FloatArray, theta: FloatArray) -> bool:
+    """Fit two columns as :func:`fit_members` does, in registers."""
     a, b = start[0], start[1]
+    theta[0], theta[1] = a, b
     s00 = s10 = s11 = g0 = g1 = 0.0
     for m in range(count):
         i = members[m]
@@ -123,11 +148,58 @@ def _accumulate_two(rows: Rows, members: IntArray, count: int, start: FloatArray
         s11 += x1 * x1
         g0 += x0 * r
         g1 += x1 * r
-    system[0, 0] = s00
-    system[1, 0] = s10
-    system[1, 1] = s11
-    system[0, 2] = g0
-    system[1, 2] = g1
+    return _correct_two(s00, s10, s11, g0, g1, theta)
+
+
+@device
+def fit_two_near(rows: Rows, points: IntArray, size: int, T: float, theta: FloatArray) -> bool:
+    """Fit two columns to those of the first ``size`` points with |residual| <= T, in place.
+
+    The same as listing them and calling :func:`fit_members`: the others add zeros, which change no sum, and
+    a loop of fixed length without branches lets one fit begin before the last has ended.
+
+    Returns
+    -------
+    bool
+        False, with ``theta`` as it was, if there are no more than two or they do not determine a model.
+    """
+    a, b = theta[0], theta[1]
+    s00 = s10 = s11 = g0 = g1 = 0.0
+    count = 0
+    for m in range(size):
+        i = points[m]
+        x0 = rows.columns[0, rows.base + i]
+        x1 = rows.columns[1, rows.base + i]
+        r = (rows.y[i] - a * x0) - b * x1
+        inside = abs(r) <= T
+        count += 1 if inside else 0
+        s00 += x0 * x0 if inside else 0.0
+        s10 += x1 * x0 if inside else 0.0
+        s11 += x1 * x1 if inside else 0.0
+        g0 += x0 * r if inside else 0.0
+        g1 += x1 * r if inside else 0.0
+    return count > 2 and _correct_two(s00, s10, s11, g0, g1, theta)
+
+
+@device
+def _correct_two(s00: float, s10: float, s11: float, g0: float, g1: float, theta: FloatArray) -> bool:
+    """Add the solution of two normal equations to ``theta``, by the steps of :func:`fit_members`."""
+    if not s00 > RANK_TOLERANCE * s00:
+        return False
+    d0 = math.sqrt(s00)
+    below = s10 / d0
+    reduced = s11 - below * below
+    if not reduced > RANK_TOLERANCE * s11:
+        return False
+    d1 = math.sqrt(reduced)
+    g0 /= d0
+    g1 = (g1 - below * g0) / d1 / d1
+    g0 = (g0 - below * g1) / d0
+    if not (math.isfinite(theta[0] + g0) and math.isfinite(theta[1] + g1)):
+        return False
+    theta[0] += g0
+    theta[1] += g1
+    return True
 
 
 @device

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from estimators.arrays import FloatArray
 from estimators.consensus.found import Found
 from estimators.inference.sandwich import LEAST_DOF, sandwich
+from estimators.inference.spread import covariance_from_axes
 from estimators.regression.column_influence import column_influence, neighbour_products
 from estimators.regression.influence import INLIERS, PSI_SQUARE, SUPPORT
 
@@ -26,7 +28,7 @@ class ColumnUncertainty:
 
     Attributes
     ----------
-    method : {"effective-n", "sandwich"}
+    method : {"effective-n", "sandwich", "hac", "bootstrap", "permutation"}
     sandwich, plain : ndarray of float64, shape (p, p)
         Two covariances, of the residuals as they are and of residuals alike everywhere; the larger counts.
     effective_n : float
@@ -63,6 +65,25 @@ class ColumnUncertainty:
         """
         larger = np.maximum(_quadratic(directions, self.sandwich), _quadratic(directions, self.plain))
         return np.asarray(np.sqrt(np.maximum(larger, 0.0)), dtype=np.float64)
+
+    def named(self, method: str) -> ColumnUncertainty:
+        """Say that it goes by another method's name."""
+        return dataclasses.replace(self, method=method)
+
+    def along(
+        self, axes: FloatArray, covariance: FloatArray, method: str, effective_n: float, dof: float
+    ) -> ColumnUncertainty:
+        """Exchange both covariances for one given along axes.
+
+        Parameters
+        ----------
+        axes, covariance : ndarray of float64, shape (p, p)
+            One axis per row.
+        method : str
+        effective_n, dof : float
+        """
+        own = covariance_from_axes(axes, covariance)
+        return ColumnUncertainty(method, own, own, effective_n, self.lag1, dof)
 
 
 def _quadratic(directions: FloatArray, matrix: FloatArray) -> FloatArray:

@@ -24,24 +24,28 @@ BANDWIDTH = 1.3
 MOST_FOR_LAW = 400
 """Points on which the law of the variance estimate is worked out; it depends on the share b alone."""
 
+_MOST_CORRELATION = 0.99
+_LEAST_MEAN = 0.05
+"""Of the truth; a design that explains nearly all of a column leaves its long-run variance untold."""
+_SAME_COLUMN = 1e-9
+
 
 @dataclass(frozen=True, slots=True)
 class LongRun:
-    """Long-run covariance of the scores of a line, relative to what independent points would have.
+    """Long-run covariance of sums of scores, relative to what independent points would have.
 
     Attributes
     ----------
-    level, slope : float
-        Ratio of the long-run to the independent variance of either sum of scores.
-    correlation : float
-        Correlation of the two sums.
+    ratio : ndarray of float64, shape (k,)
+        Ratio of the long-run to the independent variance of each sum.
+    correlation : ndarray of float64, shape (k, k)
+        Of the sums.
     dof : float
-        Degrees of freedom of the estimate of ``slope``.
+        Degrees of freedom of the estimate of the first.
     """
 
-    level: float
-    slope: float
-    correlation: float
+    ratio: FloatArray
+    correlation: FloatArray
     dof: float
 
 
@@ -82,8 +86,11 @@ def bartlett_sum(t: FloatArray, a: FloatArray, b: FloatArray, bandwidth: float) 
     return float(np.sum(a * near))
 
 
-def long_run(t: FloatArray, scores: FloatArray, center: float, lag1: float) -> LongRun | None:
-    """Long-run covariance of the scores of level and slope.
+def long_run(
+    t: FloatArray, scores: FloatArray, influences: FloatArray, design: FloatArray, lag1: float,
+    root_weight: FloatArray | None = None,
+) -> LongRun | None:  # fmt: skip
+    """Long-run covariance of the estimates of some combinations of coefficients.
 
     Parameters
     ----------
@@ -91,40 +98,63 @@ def long_run(t: FloatArray, scores: FloatArray, center: float, lag1: float) -> L
         Ascending.
     scores : ndarray of float64, shape (n,)
         From :func:`estimators.inference.scores.point_scores`.
-    center : float
-        Time at which independent points leave level and slope uncorrelated.
+    influences : ndarray of float64, shape (k, n)
+        How far a unit score of each point moves each combination, up to a factor.
+    design : ndarray of float64, shape (p, n)
+        Columns of the fit.
     lag1 : float
         Lag-1 correlation, 0 up to less than 1, by which the scores are prewhitened.
+    root_weight : ndarray of float64, shape (n,), or None
+        Square roots of the precisions.
 
     Returns
     -------
     LongRun or None
-        None where the scores are all 0.
+        None where the scores of a combination are all 0.
 
     Examples
     --------
     >>> rng = np.random.default_rng(0)
-    >>> noise = rng.normal(size=4001)
-    >>> found = long_run(np.arange(4000.0), noise[1:] + noise[:-1], 1999.5, 0.0)
-    >>> bool(1.5 < found.slope < 2.5)  # a moving average of two has twice the long-run variance
+    >>> noise, t = rng.normal(size=4001), np.arange(4000.0)
+    >>> line = np.array([np.ones(4000), t])
+    >>> found = long_run(t, noise[1:] + noise[:-1], np.array([t - 1999.5]), line, 0.0)
+    >>> bool(1.5 < found.ratio[0] < 2.5)  # a moving average of two has twice the long-run variance
     True
     """
-    away = t - center
-    level, slope = scores, scores * away
-    independent = float(np.sum(level * level)), float(np.sum(slope * slope))
-    if min(independent) <= 0.0:
+    k = influences.shape[0]
+    each = scores * influences
+    independent = np.sum(each * each, axis=1)
+    if not np.all(independent > 0.0):
         return None
+    weighted = influences if root_weight is None else influences * root_weight
+    columns = design if root_weight is None else design * root_weight
     bandwidth = BANDWIDTH * (float(t[-1]) - float(t[0])) * math.sqrt(t.size) / (t.size - 1)
-    white = [_prewhiten(column, lag1) for column in (level, slope)]
-    sums = [bartlett_sum(t, white[i], white[j], bandwidth) for i, j in ((0, 0), (0, 1), (1, 1))]
-    mean_level, _ = _law(t, np.ones(t.size), center, bandwidth)
-    mean_slope, dof = _law(t, away, center, bandwidth)
-    recolour = 1.0 / (1.0 - lag1) ** 2
-    level_ratio = max(sums[0], 0.0) * recolour / (independent[0] * mean_level)
-    slope_ratio = max(sums[2], 0.0) * recolour / (independent[1] * mean_slope)
-    bound = math.sqrt(max(sums[0], 0.0) * max(sums[2], 0.0))
-    correlation = sums[1] / bound if bound > 0.0 else 0.0
-    return LongRun(level_ratio, slope_ratio, min(max(correlation, -0.99), 0.99), dof)
+    carried = np.array([_carried(row, lag1) for row in weighted])
+    white = [_prewhiten(row, rho) for row, rho in zip(each, carried.tolist(), strict=True)]
+    sums = np.empty((k, k))
+    for i in range(k):
+        for j in range(i, k):
+            sums[i, j] = sums[j, i] = bartlett_sum(t, white[i], white[j], bandwidth)
+    means, dof = _law(t, weighted, columns, bandwidth)
+    variance = np.maximum(np.diag(sums), 0.0)
+    ratio = variance / (1.0 - carried) ** 2 / (independent * means)
+    bound = np.sqrt(np.outer(variance, variance))
+    correlation = np.divide(sums, bound, out=np.zeros_like(sums), where=bound > 0.0)
+    np.fill_diagonal(correlation, 0.0)
+    strongest = float(np.abs(correlation).max())
+    # A convex combination with the identity stays a correlation matrix.
+    correlation *= min(1.0, _MOST_CORRELATION / strongest) if strongest > 0.0 else 0.0
+    np.fill_diagonal(correlation, 1.0)
+    return LongRun(ratio, correlation, dof)
+
+
+def _carried(column: FloatArray, lag1: float) -> float:
+    """Lag-1 correlation of the scores of a column under noise with ``lag1``: a fast column turns it about.
+
+    Prewhitening each score by its own is Andrews and Monahan's (1992) with a diagonal autoregression.
+    """
+    size = float(np.sum(column[1:] ** 2 + column[:-1] ** 2))
+    return lag1 * 2.0 * float(np.sum(column[1:] * column[:-1])) / size if size > 0.0 else 0.0
 
 
 def _prewhiten(scores: FloatArray, lag1: float) -> FloatArray:
@@ -136,24 +166,44 @@ def _prewhiten(scores: FloatArray, lag1: float) -> FloatArray:
     return white
 
 
-def _law(t: FloatArray, column: FloatArray, center: float, bandwidth: float) -> tuple[float, float]:
-    """Mean, relative to the truth, and degrees of freedom of the estimate for independent noise.
+def _law(
+    t: FloatArray, columns: FloatArray, design: FloatArray, bandwidth: float
+) -> tuple[FloatArray, float]:
+    """Means of the estimates for independent noise, in the truth's units; degrees of freedom of the first.
 
-    With D the column of a coefficient, K the kernel and M the residual maker of the line, the estimate is
-    u' M D K D M u = u' Q u with mean tr Q and variance 2 tr Q^2 for unit noise u.
+    With D the influences on a combination, K the kernel and M the residual maker of the design, the estimate
+    is u' M D K D M u = u' Q u with mean tr Q and variance 2 tr Q^2 for unit noise u.
     """
-    n = t.size
-    chosen = np.arange(0, n, max(1, -(-n // MOST_FOR_LAW)))
-    at, weight = t[chosen], column[chosen]
+    chosen = np.arange(0, t.size, max(1, -(-t.size // MOST_FOR_LAW)))
+    at = t[chosen]
     kernel = np.maximum(1.0 - np.abs(at[:, None] - at[None, :]) / bandwidth, 0.0)
-    form = kernel * weight[:, None] * weight[None, :]
-    away = at - center
-    away = away - away.mean()
-    basis = np.array([np.full(at.size, 1.0 / math.sqrt(at.size)), away / math.sqrt(float(np.sum(away**2)))])
-    # M Q M for M = I - basis' basis, without a product of large matrices: sums in a fixed order.
-    for vector in basis:
-        form = form - vector[:, None] * np.sum(vector[:, None] * form, axis=0)[None, :]
-        form = form - np.sum(form * vector[None, :], axis=1)[:, None] * vector[None, :]
-    mean = float(np.trace(form))
-    square = float(np.sum(form * form))
-    return mean / float(np.sum(weight * weight)), mean * mean / square
+    basis = _orthonormal(design[:, chosen])
+    means, dof = np.ones(columns.shape[0]), math.inf
+    for index, weight in enumerate(columns[:, chosen]):
+        truth = float(np.sum(weight * weight))
+        if truth <= 0.0:
+            continue
+        form = kernel * weight[:, None] * weight[None, :]
+        # M Q M for M = I - basis' basis, without a product of large matrices: sums in a fixed order.
+        for vector in basis:
+            form = form - vector[:, None] * np.sum(vector[:, None] * form, axis=0)[None, :]
+            form = form - np.sum(form * vector[None, :], axis=1)[:, None] * vector[None, :]
+        mean = float(np.trace(form))
+        means[index] = max(mean / truth, _LEAST_MEAN)
+        if index == 0:
+            dof = max(mean * mean / float(np.sum(form * form)), 1.0)
+    return means, dof
+
+
+def _orthonormal(design: FloatArray) -> list[FloatArray]:
+    """Orthonormal rows that span those of a design (Gram-Schmidt, twice for rounding's sake)."""
+    basis: list[FloatArray] = []
+    for column in design:
+        row = column
+        for _ in range(2):
+            for vector in basis:
+                row = row - vector * float(np.sum(vector * row))
+        left, size = math.sqrt(float(np.sum(row * row))), math.sqrt(float(np.sum(column * column)))
+        if left > _SAME_COLUMN * size:
+            basis.append(row / left)
+    return basis

@@ -10,11 +10,15 @@ w the share of inliers, since a removed neighbour carries no correlation along.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from estimators.arrays import FloatArray
+from estimators.inference.spread import covariance_from_axes
 from estimators.regression.group_uncertainty import GroupUncertainty
 from estimators.regression.influence import (
     A0,
@@ -51,7 +55,7 @@ class LineUncertainty:
 
     Attributes
     ----------
-    method : {"effective-n", "sandwich", "jackknife"}
+    method : {"effective-n", "sandwich", "jackknife", "hac", "bootstrap", "permutation"}
     center : float
         Time at which level and slope are uncorrelated.
     level_variance, slope_variance : float
@@ -71,6 +75,53 @@ class LineUncertainty:
     effective_n: float
     lag1: float
     dof: float
+
+    @property
+    def axes(self) -> FloatArray:
+        """Slope, and level at the center, as combinations of (level at time 0, slope), shape (2, 2)."""
+        return np.array([[0.0, 1.0], [1.0, self.center]])
+
+    def stderr(self, directions: FloatArray) -> FloatArray:
+        """Compute standard errors of linear combinations of (level at time 0, slope).
+
+        Parameters
+        ----------
+        directions : ndarray of float64, shape (k, 2)
+
+        Returns
+        -------
+        ndarray of float64, shape (k,)
+
+        Examples
+        --------
+        >>> line = LineUncertainty("sandwich", 1.0, 4.0, 9.0, 20.0, 0.0, 18.0)
+        >>> line.stderr(np.array([[0.0, 1.0], [1.0, 1.0]]))
+        array([3., 2.])
+        """
+        levels, slopes = directions[:, 0], directions[:, 1]
+        away = slopes - levels * self.center
+        return np.sqrt(self.level_variance * levels**2 + self.slope_variance * away**2)
+
+    def named(self, method: str) -> LineUncertainty:
+        """Say that it goes by another method's name."""
+        return dataclasses.replace(self, method=method)
+
+    def along(
+        self, axes: FloatArray, covariance: FloatArray, method: str, effective_n: float, dof: float
+    ) -> LineUncertainty:
+        """Exchange the covariance for one given along axes.
+
+        Parameters
+        ----------
+        axes, covariance : ndarray of float64, shape (2, 2)
+            One axis per row.
+        method : str
+        effective_n, dof : float
+        """
+        (v00, v01), (_, v11) = covariance_from_axes(axes, covariance).tolist()
+        center = -v01 / v11
+        level = max(v00 + center * v01, 0.0)
+        return LineUncertainty(method, center, level, v11, effective_n, self.lag1, dof)
 
 
 def line_uncertainty(

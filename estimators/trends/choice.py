@@ -2,8 +2,10 @@
 
 Every candidate is fitted as if it had been asked for. What it leaves unexplained is then weighed in the same
 way for all: the likelihood of the values under noise, correlated or not, uniform outliers and excursions,
-less half a ln n per coefficient (Schwarz 1978). Noise that grows with the level is weighed in the units of
-the values too: the density of ln(value) times 1 / value.
+less half a ln n per coefficient (Schwarz 1978), less what chance finds. Among n points there are some n^p
+curves of p coefficients to look through, and the fewer points a curve has to hold, the better the best of
+them looks; and a slope, then a bend has to be twenty times as likely as none. Noise that grows with the level
+is weighed in the units of the values too: the density of ln(value) times 1 / value.
 """
 
 from __future__ import annotations
@@ -14,7 +16,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from estimators.arrays import FloatArray, InputError
+from estimators.arrays import FloatArray
 from estimators.consensus.bases.likelihood import noise_evidence, value_range
 from estimators.result import NoFit
 from estimators.series import Series
@@ -31,6 +33,10 @@ _DEGREE = 2
 _FINEST = 1e-9
 """Least noise scale in units of the range of the values: finer ones are all called exact."""
 _IMPOSSIBLE = 1e6
+_CHANCE = 2.0
+"""Price of a coefficient in ln n, times the share of the points that do not follow the curve."""
+_TWENTY_TIMES = math.log(20.0)
+"""Price of each step away from a level: to a slope, to a bend."""
 
 
 def fit_auto(request: Request) -> Trend | NoFit:
@@ -46,9 +52,8 @@ def fit_auto(request: Request) -> Trend | NoFit:
     Trend or NoFit
         With the evidence for every shape that could be fitted; ``NoFit`` of the level if none could.
     """
-    if request.uncertainty != "effective-n":
-        raise InputError("uncertainty", "the model auto offers effective-n only; name the model")
-    request = _with_periods(request)
+    uncertainty = request.uncertainty
+    request = _with_periods(dataclasses.replace(request, uncertainty="effective-n"))
     parabola = dataclasses.replace(request, basis=dataclasses.replace(request.basis, degree=_DEGREE))
     candidates: list[tuple[Request, Callable[[Request], Trend | NoFit]]] = [
         (request, fit_constant),
@@ -61,14 +66,22 @@ def fit_auto(request: Request) -> Trend | NoFit:
         # A scale that was given is one of the values, whose noise is then the same at every level.
         candidates.append((dataclasses.replace(request, noise="additive"), fit_exponential))
     fits = [fit(asked) for asked, fit in candidates]
-    trends = [trend for trend in fits if isinstance(trend, Trend)]
+    trends = [
+        (trend, candidate)
+        for trend, candidate in zip(fits, candidates, strict=True)
+        if isinstance(trend, Trend)
+    ]
     if not trends:
         return next(failed for failed in fits if isinstance(failed, NoFit))
-    weighed = [(_log_evidence(trend, request.series), trend) for trend in trends]
+    weighed = [(_log_evidence(trend, request.series), trend, candidate) for trend, candidate in trends]
     # The first of equals is the simplest.
-    weighed.sort(key=lambda pair: -pair[0])
-    best, chosen = weighed[0]
-    evidence = tuple(_row(trend, value, best - value, trend is chosen) for value, trend in weighed)
+    weighed.sort(key=lambda triple: -triple[0])
+    best, chosen, (asked, fit) = weighed[0]
+    evidence = tuple(_row(trend, value, best - value, trend is chosen) for value, trend, _ in weighed)
+    # A level has no trend whose p-value could be counted: its interval is the formula's.
+    if uncertainty != "effective-n" and not (uncertainty == "permutation" and chosen.model == "constant"):
+        inferred = fit(dataclasses.replace(asked, uncertainty=uncertainty))
+        chosen = inferred if isinstance(inferred, Trend) else chosen
     return dataclasses.replace(chosen, evidence=evidence)
 
 
@@ -85,7 +98,7 @@ def _with_periods(request: Request) -> Request:
 
 
 def _log_evidence(trend: Trend, series: Series) -> float:
-    """Log-likelihood of the values less the price of the coefficients."""
+    """Log-likelihood of the values less the price of the coefficients, of the search and of a trend."""
     y = series.y
     unit = value_range(y)
     fitted = trend.geometry.value(series.t)
@@ -101,7 +114,9 @@ def _log_evidence(trend: Trend, series: Series) -> float:
             )
         sigma, floor = trend.consensus.sigma / unit, _FINEST
     likelihood = noise_evidence(np.ascontiguousarray(residual), np.ascontiguousarray(root), sigma, floor)
-    return likelihood - 0.5 * _coefficients(trend) * math.log(series.n)
+    price = 0.5 + _CHANCE * (1.0 - trend.consensus.inlier_ratio)
+    likelihood -= price * _coefficients(trend) * math.log(series.n)
+    return likelihood - _bends(trend) * _TWENTY_TIMES
 
 
 def _of_logarithms(y: FloatArray, fitted: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -115,6 +130,11 @@ def _of_logarithms(y: FloatArray, fitted: FloatArray) -> tuple[FloatArray, Float
     ratio = np.where(possible, y / np.where(possible, fitted, 1.0), 1.0)
     residual = np.where(possible, size * np.log(ratio), _IMPOSSIBLE)
     return residual, 1.0 / size
+
+
+def _bends(trend: Trend) -> int:
+    curve = trend.geometry
+    return curve.design.degree if isinstance(curve, BasisCurve) else 1
 
 
 def _coefficients(trend: Trend) -> int:

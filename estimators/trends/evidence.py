@@ -21,7 +21,8 @@ class Evidence:
     coefficients : int
         Numbers that the shape fits.
     log_evidence : float
-        Log-likelihood of the values, outliers included, less half a ln n per coefficient (Schwarz 1978).
+        Log-likelihood of the values, outliers included, less half a ln n per coefficient (Schwarz 1978), more
+        where few points follow the shape, and less ln 20 for each step from a level to a slope and a bend.
     margin : float
         By how much it is less than that of the best shape; 0 for the best.
     sigma : float

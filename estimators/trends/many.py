@@ -10,6 +10,7 @@ import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextvars import copy_context
+from dataclasses import replace
 from inspect import signature
 from numbers import Integral
 from typing import Any
@@ -111,6 +112,9 @@ def fit_trends(
     settings = Settings(model, method, threshold, sigma, level, seed, chosen, _check_further(further))
     # A fit of nothing looks at every setting.
     settings.fit([], [])
+    if weights is not None:
+        # Whether the method takes weights, a line through two points tells.
+        replace(settings, model="line", further={}).fit([0.0, 1.0], [0.0, 1.0], [1.0, 1.0])
     source = read_source(t, values, offsets, weights, settings)
     titles = _check_names(names, source.series)
     columns = Columns(source, keep_points=points)

@@ -17,6 +17,8 @@ from estimators.arrays import BoolArray, FloatArray, InputError, IntArray
 from estimators.result import NoFit, Points
 from estimators.trends.batch.source import Source
 from estimators.trends.presentation.json_values import numbers_to_json, time_to_json
+from estimators.trends.questions.crossing import Crossing
+from estimators.trends.regimes.regime import Regime
 from estimators.trends.trend import Trend
 
 if TYPE_CHECKING:
@@ -55,6 +57,12 @@ class TrendTable:
     fitted : ndarray of bool, shape (series,)
     reason, message : tuple of str
         Why there is no trend; empty where there is one.
+    models : tuple of str
+        Shape of each trend: with ``model="auto"`` the one chosen; empty where nothing was fitted.
+    noise : tuple of str
+        Of an exponential ``"multiplicative"`` or ``"additive"``; empty where there is none to tell.
+    regimes, crossings : tuple of tuple
+        As in :class:`Trend`, for ``regime`` and ``reach``; empty where they were not asked for.
     origin : ndarray of float64 or datetime64[ns], shape (series,)
         Where intercepts are taken; NaN or NaT where nothing was fitted.
     parameters : mapping of str to Estimates
@@ -87,6 +95,10 @@ class TrendTable:
     fitted: BoolArray
     reason: tuple[str, ...]
     message: tuple[str, ...]
+    models: tuple[str, ...]
+    noise: tuple[str, ...]
+    regimes: tuple[tuple[Regime, ...], ...]
+    crossings: tuple[tuple[Crossing, ...], ...]
     origin: np.ndarray[Any, Any]
     parameters: Mapping[str, Estimates]
     n: IntArray
@@ -139,9 +151,9 @@ class TrendTable:
         Returns
         -------
         pandas.DataFrame
-            Indexed by name (or number), with the columns ``fitted``, ``reason``, ``message``, ``origin``,
-            of each parameter its name and ``_stderr``, ``_low``, ``_high``, and the other columns of the
-            table; ``notices`` are codes separated by spaces.
+            Indexed by name (or number), with the columns ``fitted``, ``reason``, ``message``, ``model``,
+            ``origin``, of each parameter its name and ``_stderr``, ``_low``, ``_high``, and the other columns
+            of the table; ``notices`` are codes separated by spaces.
 
         Raises
         ------
@@ -154,6 +166,7 @@ class TrendTable:
             "fitted": self.fitted,
             "reason": pd.Categorical(self.reason),
             "message": list(self.message),
+            "model": pd.Categorical(self.models),
             "origin": self.origin,
         }
         for name, estimates in self.parameters.items():
@@ -188,6 +201,7 @@ class TrendTable:
             "fitted": self.fitted.tolist(),
             "reason": [reason or None for reason in self.reason],
             "message": [message or None for message in self.message],
+            "models": [model or None for model in self.models],
             "origin": time_to_json(self.origin),
             "parameters": {
                 name: {

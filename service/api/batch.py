@@ -9,16 +9,21 @@ from collections.abc import AsyncIterator, Callable, Iterator
 from typing import Annotated, Any
 
 import orjson
-import pyarrow as pa
 from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import StreamingResponse
 
 from estimators.consensus.cancellation import cancelled_by
 from service.admission import Admission
-from service.batches import answer_batch
 from service.codecs.arguments import read_arguments
-from service.codecs.batch.registry import READERS, WRITERS, BatchWriter, Read, choose_reader, choose_writer
-from service.codecs.batch.rows import Limits, Reading
+from service.codecs.batch.registry import (
+    READERS,
+    WRITERS,
+    BatchReader,
+    BatchWriter,
+    choose_reader,
+    choose_writer,
+)
+from service.codecs.csv import read_horizon
 from service.compute import Compute, Patience
 from service.errors import Problem, ProblemType
 from service.observability.metrics import Metrics
@@ -123,23 +128,38 @@ async def fit_batch(request: Request, query: Annotated[BatchQuery, Query()]) -> 
 
 
 def _job(
-    request: Request, query: BatchQuery, body: bytes, reader: Read, writer: BatchWriter, watch: Stopwatch
+    request: Request,
+    query: BatchQuery,
+    body: bytes,
+    reader: BatchReader,
+    writer: BatchWriter,
+    watch: Stopwatch,
 ) -> Job:
     """Everything between a body and its answer, to be run in a thread; returns the number of rows."""
     settings: Settings = request.app.state.settings
     admission: Admission = request.app.state.admission
     arguments = read_arguments(query.fit_arguments())
-    limits = Limits(settings.max_points, settings.max_series, UNPACKED_PER_BODY * settings.max_body_bytes)
 
     def job(patience: Patience, emit: Emit) -> int:
+        # Arrow is imported with the first batch; single series do not wait for it.
+        import pyarrow as pa  # noqa: PLC0415
+
+        from service.batches import answer_batch  # noqa: PLC0415
+        from service.codecs.batch.rows import Limits, Reading  # noqa: PLC0415
+
+        limits = Limits(settings.max_points, settings.max_series, UNPACKED_PER_BODY * settings.max_body_bytes)
         with watch.phase("parse"):
             reading = Reading(query.columns(), arguments.time_unit, limits, patience.check)
-            batch = reader(pa.BufferReader(body), reading)
+            batch = reader.read(pa.BufferReader(body), reading)
+            horizon = None
+            if query.horizon is not None:
+                horizon = read_horizon(query.horizon, arguments.time_unit, batch.form)
         # Slots that nobody uses now; how many threads fit changes no byte of the answer.
         idle = settings.workers - admission.running
         answer = answer_batch(
             batch,
             arguments,
+            horizon=horizon,
             points=query.points,
             threads=1 + max(0, idle),
             progress=lambda _done, _total: patience.check(),

@@ -5,11 +5,11 @@ from __future__ import annotations
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import PlainTextResponse
 
-from service.compute import Warmth
 from service.errors import ProblemType
 from service.observability.metrics import METRICS_MEDIA_TYPE, Metrics
 from service.schemas.answers import HealthAnswer, ReadyAnswer
 from service.schemas.problems import problem_responses
+from service.warmth import Warmth
 
 router = APIRouter(tags=["operations"])
 
@@ -27,11 +27,15 @@ async def health() -> HealthAnswer:
     responses=problem_responses(ProblemType.not_ready),
 )
 async def ready(request: Request) -> ReadyAnswer:
-    """200 once all compiled code is loaded, so that no fit waits for a compiler; 503 until then."""
+    """200 once no fit waits for a compiler, 503 until then.
+
+    The usual fit is then answered at once; compiled code that only others need may still be read from its
+    cache behind it, and one that comes first waits for that, for milliseconds.
+    """
     warmth: Warmth = request.app.state.warmth
     if not warmth.is_ready:
         raise warmth.not_ready()
-    return ReadyAnswer(status="ready", kernels=warmth.total)
+    return ReadyAnswer(status="ready", kernels=warmth.total, loaded=warmth.loaded)
 
 
 @router.get(

@@ -170,6 +170,7 @@ def fit_columns(columns: Columns, arguments: FitArguments) -> Trend:
             degree=arguments.degree,
             seasonal=arguments.seasonal,
             harmonics=arguments.harmonics,
+            columns=columns.own or None,
             regime=arguments.regime,
             reach=arguments.reach,
             horizon=columns.horizon,

@@ -14,6 +14,26 @@ from typing import Annotated, Literal
 
 import typer
 
+from service.cli.options import (
+    Degree,
+    Harmonics,
+    Horizon,
+    Level,
+    Method,
+    Model,
+    Noise,
+    Reach,
+    Regime,
+    Resamples,
+    Seasonal,
+    Seed,
+    Sigma,
+    Threshold,
+    TimeUnit,
+    Uncertainty,
+    Weight,
+)
+
 __all__ = ["app"]
 
 app = typer.Typer(
@@ -57,60 +77,35 @@ def fit(
         str | None,
         typer.Option(metavar="COL", help="Column of values, by name or position. Default: guessed."),
     ] = None,
-    weight: Annotated[
-        str | None,
-        typer.Option(metavar="COL", help="Column of precisions (1/variance). Default: 'weight', if any."),
+    weight: Weight = None,
+    column: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="COL", help="Column to fit along with the model linear, by name or position; repeat it."
+        ),
     ] = None,
     delimiter: Annotated[
         str | None,
         typer.Option(metavar="CHAR", help="What separates cells, or the word tab. Default: found out."),
     ] = None,
-    time_unit: Annotated[
-        Literal["s", "ms", "us", "ns"] | None, typer.Option(help="Unit of times that are numbers since 1970.")
-    ] = None,
+    time_unit: TimeUnit = None,
     since: Annotated[str | None, typer.Option(metavar="T", help="Leave out rows before this time.")] = None,
     until: Annotated[str | None, typer.Option(metavar="T", help="Leave out rows after this time.")] = None,
-    model: Annotated[str, typer.Option(help="Shape of the trend; see 'plumbline models'.")] = "line",
-    method: Annotated[str, typer.Option(help="How it is found; see 'plumbline methods'.")] = "auto",
-    threshold: Annotated[
-        float | None, typer.Option(help="Largest distance of an inlier from the trend. Default: estimated.")
-    ] = None,
-    sigma: Annotated[float | None, typer.Option(help="Noise scale of an inlier. Default: estimated.")] = None,
-    level: Annotated[float, typer.Option(help="Confidence level of intervals and bands.")] = 0.95,
-    seed: Annotated[int, typer.Option(help="Seed of the search.")] = 0,
-    uncertainty: Annotated[
-        Literal["effective-n", "hac", "bootstrap", "permutation"],
-        typer.Option(help="How intervals and p-value are made; bootstrap and permutation fit again."),
-    ] = "effective-n",
-    noise: Annotated[
-        Literal["auto", "multiplicative", "additive"],
-        typer.Option(help="Noise of an exponential. Default: told from the data."),
-    ] = "auto",
-    degree: Annotated[
-        int | None, typer.Option(help="Degree of the polynomial of the model linear. Default: 1.")
-    ] = None,
-    seasonal: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="P",
-            help="Period of a season: a number in the unit of time (seconds for dates), hour, day, week, "
-            "month, year, or auto; may be repeated.",
-        ),
-    ] = None,
-    harmonics: Annotated[
-        int | None, typer.Option(help="Harmonics per season. Default: as many as the data support.")
-    ] = None,
-    regime: Annotated[
-        Literal["all", "last"],
-        typer.Option(help="Fit the whole series, or since it last left its line for good."),
-    ] = "all",
-    reach: Annotated[
-        list[float] | None,
-        typer.Option(metavar="V", help="Value to reach: when? May be repeated."),
-    ] = None,
-    horizon: Annotated[
-        str | None, typer.Option(metavar="T", help="Time by which --reach is wanted: how likely?")
-    ] = None,
+    model: Model = "line",
+    method: Method = "auto",
+    threshold: Threshold = None,
+    sigma: Sigma = None,
+    level: Level = 0.95,
+    seed: Seed = 0,
+    uncertainty: Uncertainty = "effective-n",
+    resamples: Resamples = None,
+    noise: Noise = "auto",
+    degree: Degree = None,
+    seasonal: Seasonal = None,
+    harmonics: Harmonics = None,
+    regime: Regime = "all",
+    reach: Reach = None,
+    horizon: Horizon = None,
     predict: Annotated[
         list[str] | None, typer.Option(metavar="T", help="Time at which to predict; may be repeated.")
     ] = None,
@@ -132,6 +127,7 @@ def fit(
             time=time,
             value=value,
             weight=weight,
+            column=tuple(column or ()),
             delimiter=delimiter,
             time_unit=time_unit,
             since=since,
@@ -144,6 +140,7 @@ def fit(
             seed=seed,
             noise=noise,
             uncertainty=uncertainty,
+            resamples=resamples,
             degree=degree,
             seasonal=tuple(seasonal or ()),
             harmonics=harmonics,
@@ -181,10 +178,7 @@ def fit_many(
     value: Annotated[
         str | None, typer.Option(metavar="COL", help="Column of values. Default: 'value'.")
     ] = None,
-    weight: Annotated[
-        str | None,
-        typer.Option(metavar="COL", help="Column of precisions (1/variance). Default: 'weight', if any."),
-    ] = None,
+    weight: Weight = None,
     lat: Annotated[
         str | None, typer.Option(metavar="COL", help="Column of latitudes. Default: 'lat', if any.")
     ] = None,
@@ -195,17 +189,22 @@ def fit_many(
         str | None,
         typer.Option(metavar="CHAR", help="CSV: what separates cells, or the word tab. Default: found out."),
     ] = None,
-    time_unit: Annotated[
-        Literal["s", "ms", "us", "ns"] | None, typer.Option(help="Unit of times that are numbers since 1970.")
-    ] = None,
-    model: Annotated[str, typer.Option(help="Shape of the trends; see 'plumbline models'.")] = "line",
-    method: Annotated[str, typer.Option(help="How they are found; see 'plumbline methods'.")] = "auto",
-    threshold: Annotated[
-        float | None, typer.Option(help="Largest distance of an inlier from its trend. Default: estimated.")
-    ] = None,
-    sigma: Annotated[float | None, typer.Option(help="Noise scale of an inlier. Default: estimated.")] = None,
-    level: Annotated[float, typer.Option(help="Confidence level of intervals.")] = 0.95,
-    seed: Annotated[int, typer.Option(help="Seed of the search.")] = 0,
+    time_unit: TimeUnit = None,
+    model: Model = "line",
+    method: Method = "auto",
+    threshold: Threshold = None,
+    sigma: Sigma = None,
+    level: Level = 0.95,
+    seed: Seed = 0,
+    uncertainty: Uncertainty = "effective-n",
+    resamples: Resamples = None,
+    noise: Noise = "auto",
+    degree: Degree = None,
+    seasonal: Seasonal = None,
+    harmonics: Harmonics = None,
+    regime: Regime = "all",
+    reach: Reach = None,
+    horizon: Horizon = None,
     points: Annotated[bool, typer.Option("--points", help="Label every row of every series.")] = False,
 ) -> None:
     """Fit a trend to every series of a long table and write a row for each."""
@@ -229,6 +228,15 @@ def fit_many(
             sigma=sigma,
             level=level,
             seed=seed,
+            noise=noise,
+            uncertainty=uncertainty,
+            resamples=resamples,
+            degree=degree,
+            seasonal=tuple(seasonal or ()),
+            harmonics=harmonics,
+            regime=regime,
+            reach=tuple(reach or ()),
+            horizon=horizon,
             points=points,
         )
     )
@@ -249,6 +257,9 @@ def serve(
     # What is imported stays: looking for garbage in it meanwhile takes a fifth of the start.
     gc.disable()
     try:
+        from service.cli.postponing import postpone_imports
+
+        postpone_imports()
         from service.cli.serving import run_server
 
         run_server(host, port)

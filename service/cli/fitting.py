@@ -13,7 +13,7 @@ import numpy as np
 import typer
 
 import estimators
-from estimators import InputError, NoFit, Trend
+from estimators import InputError, NoFit, RobustOptions, Trend
 from estimators.trends.presentation.layout import to_text
 from estimators.trends.presentation.report import describe
 from service.cli.moments import read_moment_like
@@ -31,7 +31,12 @@ if TYPE_CHECKING:
 PICTURES: dict[str, FigureFormat] = {".png": "png", ".svg": "svg"}
 
 # How the options are called that the library knows by another name.
-_OPTION_OF = {"t": "the time column", "y": "the value column", "weights": "the weight column"}
+_OPTION_OF = {
+    "t": "the time column",
+    "y": "the value column",
+    "weights": "the weight column",
+    "columns": "--column",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,12 +63,14 @@ class FitRequest:
     output: Literal["text", "json", "csv"]
     noise: str = "auto"
     uncertainty: str = "effective-n"
+    resamples: int | None = None
     degree: int | None = None
     seasonal: tuple[str, ...] = ()
     harmonics: int | None = None
     regime: str = "all"
     reach: tuple[float, ...] = ()
     horizon: str | None = None
+    column: tuple[str, ...] = ()
 
 
 def run_fit(request: FitRequest, *, one_format: bool = True) -> None:
@@ -129,6 +136,7 @@ def _read(request: FitRequest) -> Table:
         time=request.time,
         value=request.value,
         weight=request.weight,
+        own=request.column,
         delimiter=None if request.delimiter is None else read_delimiter(request.delimiter),
         time_unit=request.time_unit,
     )
@@ -149,6 +157,7 @@ def _read(request: FitRequest) -> Table:
         value=columns.value[kept],
         weight=None if columns.weight is None else columns.weight[kept],
         predict=predict,
+        own={name: column[kept] for name, column in columns.own.items()},
     )
     return dataclasses.replace(table, columns=columns)
 
@@ -170,6 +179,7 @@ def _bytes_of(file: str) -> bytes:
 def _fit(request: FitRequest, table: Table) -> Trend | NoFit:
     columns = table.columns
     try:
+        options = RobustOptions() if request.resamples is None else RobustOptions(resamples=request.resamples)
         return estimators.fit_trend(
             columns.time,
             columns.value,
@@ -185,10 +195,12 @@ def _fit(request: FitRequest, table: Table) -> Trend | NoFit:
             degree=request.degree,
             seasonal=read_periods(request.seasonal) if request.seasonal else None,
             harmonics=request.harmonics,
+            columns=columns.own or None,
             regime=request.regime,
             reach=request.reach or None,
             horizon=columns.horizon,
             predict=columns.predict,
+            options=options,
         )
     except InputError as error:
         fail(f"{_OPTION_OF.get(error.field, '--' + error.field.replace('_', '-'))}: {error.message}.")

@@ -22,6 +22,7 @@ import pyarrow.compute as pc
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from service.batches import answer_batch
+from service.cli.moments import read_moment_like
 from service.cli.streams import NO_TREND, fail, messages, remark
 from service.codecs.arguments import read_arguments
 from service.codecs.batch import arrow, parquet
@@ -31,11 +32,12 @@ from service.codecs.batch.documents import write_geojson, write_json, write_ndjs
 from service.codecs.batch.json import read_json
 from service.codecs.batch.rows import Batch, Limits, Reading
 from service.codecs.batch.tables import write_arrow, write_arrow_file, write_csv, write_parquet
+from service.codecs.columns import Columns, Times
 from service.codecs.table import TableError, read_delimiter
 from service.codecs.table_text import find_delimiter
 from service.errors import Problem
 from service.schemas.fields import TimeUnit
-from service.schemas.options import FitArguments
+from service.schemas.options import FitArguments, read_periods
 
 WRITERS: dict[str, Callable[[Answer], Iterator[bytes]]] = {
     ".csv": write_csv,
@@ -86,6 +88,15 @@ class FitManyRequest:
     level: float
     seed: int
     points: bool
+    noise: str = "auto"
+    uncertainty: str = "effective-n"
+    resamples: int | None = None
+    degree: int | None = None
+    seasonal: tuple[str, ...] = ()
+    harmonics: int | None = None
+    regime: str = "all"
+    reach: tuple[float, ...] = ()
+    horizon: str | None = None
 
 
 def run_fit_many(request: FitManyRequest) -> None:
@@ -136,6 +147,14 @@ def _arguments(request: FitManyRequest) -> FitArguments:
         "sigma": request.sigma,
         "level": request.level,
         "seed": request.seed,
+        "noise": request.noise,
+        "uncertainty": request.uncertainty,
+        "degree": request.degree,
+        "seasonal": read_periods(request.seasonal) if request.seasonal else None,
+        "harmonics": request.harmonics,
+        "regime": request.regime,
+        "reach": list(request.reach) or None,
+        "options": {} if request.resamples is None else {"resamples": request.resamples},
     }
     try:
         return read_arguments(given)
@@ -195,14 +214,30 @@ def _fit(
 
     try:
         with _progress(len(batch.names)) as tell, _sink(request.output) as sink:
-            answer = answer_batch(batch, arguments, points=request.points, threads=None, progress=tell)
+            answer = answer_batch(
+                batch,
+                arguments,
+                horizon=_horizon(batch, request.horizon),
+                points=request.points,
+                threads=None,
+                progress=tell,
+            )
             for piece in write(dataclasses.replace(answer, parts=counted(answer.parts))):
                 sink.write(piece)
     except Problem as problem:
         fail(f"{_told(problem)}.")
+    except TableError as error:
+        fail(f"{error}.")
     except OSError as error:
         fail(f"--output {request.output}: cannot be written ({error.strerror}); choose another place.")
     return fitted
+
+
+def _horizon(batch: Batch, text: str | None) -> Times | None:
+    if text is None:
+        return None
+    times = Columns(batch.time, batch.value, None, None, batch.form)
+    return read_moment_like(times, [text], "--horizon")
 
 
 @contextlib.contextmanager
@@ -261,4 +296,4 @@ def _told(problem: Problem) -> str:
 
 
 def _as_option(field: str) -> str:
-    return field.removesuffix("_column").replace("_", "-")
+    return field.removesuffix("_column").removeprefix("options.").replace("_", "-")

@@ -9,7 +9,7 @@ from collections.abc import Callable
 import uvicorn
 
 from service.cli.streams import answers, fail
-from service.cli.warming import warm_kernels
+from service.cli.warming import compile_missing
 from service.main import create_app
 from service.observability.logs import uvicorn_log_config
 from service.settings import Settings, SettingsError, load_settings
@@ -30,7 +30,7 @@ def run_server(host: str | None, port: int | None) -> None:
     except SettingsError as error:
         fail(f"{error}.")
     listener = _listen(settings)
-    warm_kernels()
+    compile_missing(settings)
     config = uvicorn.Config(
         create_app(settings),
         log_config=uvicorn_log_config(settings),

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from pydantic import ValidationError
 
 from service.errors import FieldError, Problem, ProblemType
 from service.schemas.options import FitArguments
+
+_EXPECTED = "Input should be "
 
 
 def read_arguments(given: dict[str, Any]) -> FitArguments:
@@ -39,14 +42,29 @@ def from_validation(found: Any, skip: int = 0) -> Problem:
     skip : int
         Leading parts of each location to leave out (FastAPI puts ``"query"`` first).
     """
-    errors = [
-        FieldError(".".join(str(part)[:60] for part in item["loc"][skip:]), _message(item))
-        for item in found[:20]
-    ]
+    messages: dict[str, list[str]] = {}
+    for item in found[:20]:
+        told = messages.setdefault(_field(item["loc"][skip:]), [])
+        if _message(item) not in told:
+            told.append(_message(item))
+    errors = [FieldError(field, _alternatives(told)) for field, told in messages.items()]
     unknown = all(item["type"] == "extra_forbidden" for item in found)
     kind = ProblemType.unknown_field if unknown else ProblemType.invalid_value
     detail = "; ".join(f"{item.field}: {item.message}" for item in errors)
     return Problem(kind, detail, errors=errors)
+
+
+def _field(place: Sequence[int | str]) -> str:
+    """Name of the field at a place; below it stand entries, and pydantic's words for one of several types."""
+    depth = 2 if place and place[0] == "options" else 1
+    return ".".join(str(part)[:60] for part in place[:depth])
+
+
+def _alternatives(messages: list[str]) -> str:
+    """Sentence of all that a field may be, where it is none of it."""
+    if not all(message.startswith(_EXPECTED) for message in messages):
+        return "; ".join(messages)
+    return _EXPECTED + " or ".join(message.removeprefix(_EXPECTED) for message in messages)
 
 
 def _message(item: dict[str, Any]) -> str:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -67,6 +68,8 @@ class Columns:
     form : TimeForm
     horizon : ndarray, shape (1,), or None
         Time by which values are to be reached, of the same type as ``time``.
+    own : mapping of str to ndarray of float64, shape (n,)
+        Further columns of the caller, to be fitted along; NaN where missing.
     """
 
     time: Times
@@ -75,6 +78,7 @@ class Columns:
     predict: Times | None
     form: TimeForm
     horizon: Times | None = None
+    own: Mapping[str, npt.NDArray[np.float64]] = field(default_factory=dict)
 
 
 def from_epoch(

@@ -20,6 +20,7 @@ from estimators import Trend
 from estimators.trends.presentation.dictionary import fitted_values
 from service.codecs.arguments import read_arguments
 from service.codecs.columns import Columns, TimeForm, Times, from_epoch
+from service.codecs.limits import check_names
 from service.codecs.times import parse_iso
 from service.errors import FieldError, Problem, ProblemType, invalid_value
 from service.schemas.fields import TimeUnit
@@ -71,12 +72,38 @@ def read_csv(body: bytes, query: TrendQuery) -> tuple[Columns, FitArguments]:
         predict, asked_form = _times(asked, "predict", arguments.time_unit)
         if asked_form != form:
             raise invalid_value("predict", "must be written in the same form as the time column")
+    names = [name.strip() for item in query.own_columns or () for name in item.split(",")]
+    check_names(names, "columns")
+    own = {name: _floats(_column(header, rows, name, "columns"), f"columns.{name}") for name in names}
     horizon: Times | None = None
     if query.horizon is not None:
-        horizon, asked_form = _times([query.horizon], "horizon", arguments.time_unit)
-        if asked_form != form:
-            raise invalid_value("horizon", "must be written in the same form as the time column")
-    return Columns(time, _floats(value_cells, "value"), weight, predict, form, horizon), arguments
+        horizon = read_horizon(query.horizon, arguments.time_unit, form)
+    return Columns(time, _floats(value_cells, "value"), weight, predict, form, horizon, own), arguments
+
+
+def read_horizon(text: str, unit: TimeUnit | None, form: TimeForm) -> Times:
+    """Time by which values are to be reached, from the query string.
+
+    Parameters
+    ----------
+    text : str
+    unit : {"s", "ms", "us", "ns"} or None
+    form : TimeForm
+        Of the series.
+
+    Returns
+    -------
+    ndarray, shape (1,)
+
+    Raises
+    ------
+    Problem
+        If it is no time, or written in another form than those of the series.
+    """
+    horizon, asked_form = _times([text], "horizon", unit)
+    if asked_form != form:
+        raise invalid_value("horizon", "must be written in the same form as the time column")
+    return horizon
 
 
 def write_csv(trend: Trend, columns: Columns, _query: AnswerQuery) -> bytes:
@@ -142,9 +169,9 @@ def _column(header: list[str], rows: list[list[str]], asked: str | None, role: s
     places = [place for place, found in enumerate(header) if found == name]
     if len(places) != 1:
         how_many = "no column" if not places else "more than one column"
-        raise invalid_value(
-            f"{role}_column", f"the header has {how_many} of this name; say which with ?{role}_column="
-        )
+        parameter = role if role == "columns" else f"{role}_column"
+        named = f" {name[:60]!r}" if role == "columns" else " of this name"
+        raise invalid_value(parameter, f"the header has {how_many}{named}; say which with ?{parameter}=")
     place = places[0]
     return [row[place] for row in rows]
 

@@ -19,13 +19,14 @@ from estimators import Trend
 from estimators.trends.presentation.dictionary import fitted_values
 from service.codecs.arguments import read_arguments
 from service.codecs.columns import Columns, TimeForm, Times, from_epoch
+from service.codecs.limits import check_names
 from service.codecs.moments import write_moments
 from service.codecs.times import parse_iso
 from service.errors import FieldError, Problem, ProblemType, invalid_value, unknown_fields
 from service.schemas.fields import TimeUnit
 from service.schemas.options import AnswerQuery, FitArguments, TrendOptions, TrendQuery
 
-COLUMN_FIELDS = ("time", "value", "weight", "predict", "horizon")
+COLUMN_FIELDS = ("time", "value", "weight", "predict", "horizon", "columns")
 FIELDS = (*COLUMN_FIELDS, *FitArguments.model_fields)
 
 
@@ -89,7 +90,19 @@ def read_json(body: bytes, query: TrendQuery) -> tuple[Columns, FitArguments]:
             raise invalid_value("predict", "must be written in the same form as time")
     weight = None if is_null(fields.get("weight")) else read_numbers(fields["weight"], "weight")
     horizon = _horizon(fields.get("horizon"), arguments.time_unit, form)
-    return Columns(time, read_numbers(fields["value"], "value"), weight, predict, form, horizon), arguments
+    own = _own_columns(fields.get("columns"))
+    return Columns(
+        time, read_numbers(fields["value"], "value"), weight, predict, form, horizon, own
+    ), arguments
+
+
+def _own_columns(raw: msgspec.Raw | None) -> dict[str, npt.NDArray[np.float64]]:
+    """Columns of the caller by name."""
+    if raw is None or is_null(raw):
+        return {}
+    columns = read_object(raw, None, "columns.")
+    check_names(list(columns), "columns")
+    return {name: read_numbers(text, f"columns.{name}") for name, text in columns.items()}
 
 
 def _horizon(raw: msgspec.Raw | None, unit: TimeUnit | None, form: TimeForm) -> Times | None:
@@ -131,8 +144,10 @@ def dumps(answer: Any) -> bytes:
     return orjson.dumps(answer, option=orjson.OPT_SERIALIZE_NUMPY | orjson.OPT_NAIVE_UTC | orjson.OPT_UTC_Z)
 
 
-def read_object(text: bytes | msgspec.Raw, known: tuple[str, ...], prefix: str) -> dict[str, msgspec.Raw]:
-    """Texts of an object's values by key; ``prefix`` names where it stands in errors."""
+def read_object(
+    text: bytes | msgspec.Raw, known: tuple[str, ...] | None, prefix: str
+) -> dict[str, msgspec.Raw]:
+    """Texts of an object's values by key, any if None are known; ``prefix`` names its place in errors."""
     try:
         pairs = _OBJECT.decode(text)
     except msgspec.ValidationError as error:
@@ -142,8 +157,8 @@ def read_object(text: bytes | msgspec.Raw, known: tuple[str, ...], prefix: str) 
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise _malformed(bytes(text), error) from error
     names = [key.name for key in pairs]
-    unknown = [prefix + name for name in names if name not in known]
-    if unknown:
+    unknown = [] if known is None else [prefix + name for name in names if name not in known]
+    if known is not None and unknown:
         raise unknown_fields(unknown, known, prefix.rstrip(".") or "this request")
     repeated = next((name for place, name in enumerate(names) if name in names[:place]), None)
     if repeated is not None:

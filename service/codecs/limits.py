@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from estimators.arrays import LARGEST_TIME, LARGEST_VALUE, SMALLEST_TIME
+from estimators.trends.bases.settings import MOST_COLUMNS
 from service.codecs.columns import Columns
 from service.errors import Problem, ProblemType, invalid_value
+
+#: Of a caller's own column; the name comes back as that of a parameter.
+LONGEST_NAME = 100
 
 
 def check_columns(columns: Columns, max_points: int) -> None:
@@ -35,9 +40,26 @@ def check_columns(columns: Columns, max_points: int) -> None:
     _refuse(np.abs(columns.value) > LARGEST_VALUE, "value", too_large)
     if columns.form.kind == "number":
         _check_plain_times(columns)
-    for column in (columns.time, columns.value, columns.weight, columns.predict):
+    for column in (columns.time, columns.value, columns.weight, columns.predict, *columns.own.values()):
         if column is not None:
             column.flags.writeable = False
+
+
+def check_names(names: Sequence[str], field: str) -> None:
+    """Check the names of a caller's own columns, before any of them is read.
+
+    Raises
+    ------
+    Problem
+        If there are too many, or a name is empty, too long or given twice.
+    """
+    if len(names) > MOST_COLUMNS:
+        raise invalid_value(field, f"{len(names)} columns; at most {MOST_COLUMNS} can be fitted together")
+    for name in names:
+        if not 0 < len(name) <= LONGEST_NAME or not name.isprintable():
+            raise invalid_value(field, f"a name has 1 to {LONGEST_NAME} printable characters")
+        if names.count(name) > 1:
+            raise invalid_value(field, "a column is named twice; name each once")
 
 
 def _check_lengths(columns: Columns, max_points: int) -> None:
@@ -52,6 +74,11 @@ def _check_lengths(columns: Columns, max_points: int) -> None:
         raise invalid_value("value", f"{columns.value.size} values for {rows} times; send one value per time")
     if columns.weight is not None and columns.weight.size != rows:
         raise invalid_value("weight", f"{columns.weight.size} weights for {rows} times; send one per time")
+    for name, column in columns.own.items():
+        if column.size != rows:
+            raise invalid_value(
+                f"columns.{name}", f"{column.size} entries for {rows} times; send one per time"
+            )
 
 
 def _check_plain_times(columns: Columns) -> None:

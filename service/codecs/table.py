@@ -6,7 +6,7 @@ this; the service's own CSV codec is stricter, since its callers can mend what t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from typing import TypeVar
@@ -76,6 +76,7 @@ def read_table(
     time: str | None = None,
     value: str | None = None,
     weight: str | None = None,
+    own: Sequence[str] = (),
     delimiter: str | None = None,
     time_unit: TimeUnit | None = None,
 ) -> Table:
@@ -86,6 +87,8 @@ def read_table(
     body : bytes
     time, value, weight : str, optional
         Name or position (from 1) of a column; default: guessed, and said in ``remarks``.
+    own : sequence of str
+        Names or positions of further columns, to be fitted along.
     delimiter : str, optional
         One character; default: found out.
     time_unit : {"s", "ms", "us", "ns"}, optional
@@ -107,8 +110,9 @@ def read_table(
     """
     text = decode(body)
     sheet = _Sheet.of(text, find_delimiter(text) if delimiter is None else delimiter)
-    choice = choose_columns(sheet.headings, time, value, weight)
-    cells = sheet.read([place for place in (choice.time, choice.value, choice.weight) if place is not None])
+    choice = choose_columns(sheet.headings, time, value, weight, own)
+    places = (choice.time, choice.value, choice.weight, *choice.own)
+    cells = sheet.read([place for place in places if place is not None])
     times, form, remark = _times(sheet, choice.time, cells[choice.time], time_unit)
     columns = Columns(
         time=times,
@@ -116,6 +120,7 @@ def read_table(
         weight=None if choice.weight is None else _weights(sheet, choice.weight, cells[choice.weight]),
         predict=None,
         form=form,
+        own={sheet.headings.title(place): sheet.numbers(place, cells[place]) for place in choice.own},
     )
     return Table(
         columns=columns,

@@ -58,9 +58,12 @@ class Choice:
     value: int
     weight: int | None
     guessed: tuple[str, ...]
+    own: tuple[int, ...] = ()
 
 
-def choose_columns(headings: Headings, time: str | None, value: str | None, weight: str | None) -> Choice:
+def choose_columns(
+    headings: Headings, time: str | None, value: str | None, weight: str | None, own: Sequence[str] = ()
+) -> Choice:
     """Decide which column is which.
 
     A time is guessed to be the first column of dates, else the first number column with a usual name,
@@ -72,6 +75,8 @@ def choose_columns(headings: Headings, time: str | None, value: str | None, weig
     headings : Headings
     time, value, weight : str or None
         Name or position (from 1) of a column, None to guess.
+    own : sequence of str
+        Names or positions of further columns, to be fitted along.
 
     Returns
     -------
@@ -86,7 +91,8 @@ def choose_columns(headings: Headings, time: str | None, value: str | None, weig
     if weight is None and headings.trusted and "weight" in headings.names and "weight" not in (time, value):
         weight_place = headings.names.index("weight")
     value_place = None if value is None else find_column(headings, value, "value")
-    taken = {place for place in (weight_place, value_place) if place is not None}
+    own_places = tuple(find_column(headings, name, "column") for name in own)
+    taken = {place for place in (weight_place, value_place, *own_places) if place is not None}
     time_place = _guess_time(headings, taken) if time is None else find_column(headings, time, "time")
     if value_place is None:
         value_place = _guess_value(headings, taken | {time_place})
@@ -99,8 +105,15 @@ def choose_columns(headings: Headings, time: str | None, value: str | None, weig
         "value": value is None,
         "weight": weight is None and weight_place is not None,
     }
+    for place in own_places:
+        if place in (time_place, value_place, weight_place) or own_places.count(place) > 1:
+            raise TableError(f"column {headings.label(place)} has another role already; name another")
     return Choice(
-        time_place, value_place, weight_place, tuple(role for role, told in guesses.items() if told)
+        time_place,
+        value_place,
+        weight_place,
+        tuple(role for role, told in guesses.items() if told),
+        own_places,
     )
 
 

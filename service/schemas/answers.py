@@ -271,4 +271,7 @@ class ReadyAnswer(Answer):
     """The service takes work."""
 
     status: Literal["ready"]
-    kernels: Annotated[int, Field(description="Compiled entry points that are loaded.")]
+    kernels: Annotated[int, Field(description="Compiled entry points.")]
+    loaded: Annotated[
+        int, Field(description="Those loaded so far; the others are in the cache and loaded behind.")
+    ]

@@ -6,28 +6,12 @@ parameters are those of a single series, of the same annotated types.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from service.schemas.answers import Answer, NoFitReason, RowReason, WireTime
-from service.schemas.fields import (
-    AcceptableInliers,
-    Confidence,
-    CorrectSerialCorrelation,
-    Level,
-    MaxHypotheses,
-    Method,
-    MinHypotheses,
-    Model,
-    Seed,
-    Sigma,
-    Threshold,
-    ThresholdSigmas,
-    Unit,
-    WorkBudget,
-)
-from service.schemas.options import OPTION_PREFIX, FitArguments
+from service.schemas.options import FitQuery
 
 BatchFormat = Literal["json", "csv", "arrow", "parquet", "ndjson", "geojson"]
 ColumnName = Annotated[str, Field(max_length=1_000)]
@@ -65,7 +49,7 @@ class BatchRequest(BaseModel):
     lon: Annotated[list[float | None] | None, Field(description="Degrees east.")] = None
 
 
-class BatchQuery(BaseModel):
+class BatchQuery(FitQuery):
     """Query parameters of ``POST /v1/trends/batch``."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -92,22 +76,6 @@ class BatchQuery(BaseModel):
     lon_column: Annotated[
         ColumnName | None, Field(description="Tables: column of the longitudes (default `lon`, if any).")
     ] = None
-    time_unit: Unit | None = None
-    model: Model | None = None
-    method: Method | None = None
-    threshold: Threshold | None = None
-    sigma: Sigma | None = None
-    level: Level | None = None
-    seed: Seed | None = None
-    confidence: Annotated[Confidence | None, Field(alias="options.confidence")] = None
-    max_hypotheses: Annotated[MaxHypotheses | None, Field(alias="options.max_hypotheses")] = None
-    min_hypotheses: Annotated[MinHypotheses | None, Field(alias="options.min_hypotheses")] = None
-    work_budget: Annotated[WorkBudget | None, Field(alias="options.work_budget")] = None
-    threshold_sigmas: Annotated[ThresholdSigmas | None, Field(alias="options.threshold_sigmas")] = None
-    acceptable_inliers: Annotated[AcceptableInliers | None, Field(alias="options.acceptable_inliers")] = None
-    correct_serial_correlation: Annotated[
-        CorrectSerialCorrelation | None, Field(alias="options.correct_serial_correlation")
-    ] = None
 
     def columns(self) -> dict[str, str | None]:
         """Columns by role; None where the caller names none."""
@@ -120,17 +88,6 @@ class BatchQuery(BaseModel):
             "lon": self.lon_column,
         }
 
-    def fit_arguments(self) -> dict[str, Any]:
-        """Nest the fit's arguments that were given as in a JSON body of a single series."""
-        given = self.model_dump(by_alias=True, include=self.model_fields_set, exclude_none=True)
-        arguments = {name: value for name, value in given.items() if name in FitArguments.model_fields}
-        options = {
-            name.removeprefix(OPTION_PREFIX): value
-            for name, value in given.items()
-            if name.startswith(OPTION_PREFIX)
-        }
-        return arguments | {"options": options} if options else arguments
-
 
 Numbers = list[float | None]
 
@@ -138,17 +95,34 @@ Numbers = list[float | None]
 class BatchColumns(BaseModel):
     """One entry per series; columns of the model's parameters stand beside these.
 
-    A parameter has four columns: ``slope``, ``slope_stderr``, ``slope_low``, ``slope_high``. Numbers are null
-    where a series has no trend or the data leave no way to tell.
+    A parameter has four columns: ``slope``, ``slope_stderr``, ``slope_low``, ``slope_high``. Each value to
+    reach has columns too: ``crossing_1_value``, ``_direction``, ``_status``, ``_time``, ``_low``, ``_high``,
+    and with a horizon ``_probability`` and ``_reading_probability``. What a series does not have is null.
     """
 
     model_config = ConfigDict(extra="allow", strict=True, frozen=True)
-    __pydantic_extra__: dict[str, Numbers]
+    __pydantic_extra__: dict[str, Numbers | list[WireTime]]
 
     series: Annotated[list[str] | list[int], Field(description="In the order in which they first appear.")]
     fitted: list[bool]
-    reason: Annotated[list[NoFitReason | None], Field(description="Why a series has no trend.")]
+    reason: Annotated[
+        list[NoFitReason | Literal["invalid_input"] | None],
+        Field(
+            description="Why a series has no trend; `invalid_input` where it would be refused if sent alone."
+        ),
+    ]
     message: list[str | None]
+    model: Annotated[list[str | None], Field(description="Shape of the trend; with `auto` the one chosen.")]
+    noise: Annotated[
+        list[Literal["multiplicative", "additive"] | None] | None,
+        Field(description="Where an exponential may come: how its readings scatter."),
+    ] = None
+    regimes: Annotated[
+        list[int] | None, Field(description="With `regime=last`: regimes found, the present one among them.")
+    ] = None
+    regime_start: Annotated[
+        list[WireTime] | None, Field(description="With `regime=last`: first time of the present one.")
+    ] = None
     origin: Annotated[list[WireTime], Field(description="Where the intercept is taken.")]
     n: Annotated[list[int], Field(description="Rows that took part.")]
     inliers: list[int]

@@ -12,6 +12,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel, ConfigDict, Field
 
 from estimators import RobustOptions
+from estimators.trends.bases.settings import MOST_COLUMNS
 from service.schemas.fields import (
     AcceptableInliers,
     AnswerFormat,
@@ -126,6 +127,14 @@ class TrendRequest(FitArguments):
         Field(description="Times at which to predict, in the form of `time`."),
     ] = None
     horizon: Horizon | None = None
+    columns: Annotated[
+        dict[str, list[float | None]] | None,
+        Field(
+            max_length=MOST_COLUMNS,
+            description="Further columns of the model `linear` by name, one entry per time; null only in "
+            "rows without a value. Each is a parameter of the answer; predictions are made at their means.",
+        ),
+    ] = None
 
 
 class AnswerQuery(BaseModel):
@@ -143,25 +152,9 @@ class AnswerQuery(BaseModel):
     ] = None
 
 
-class TrendQuery(AnswerQuery):
-    """Query parameters of ``POST /v1/trends``; those of the fit are for CSV, JSON bodies carry them."""
+class FitQuery(BaseModel):
+    """Query parameters of a fit, of the same annotated types as the keys of a JSON body."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    time_column: Annotated[str | None, Field(description="CSV: column of the times (default `time`).")] = None
-    value_column: Annotated[str | None, Field(description="CSV: column of the values (default `value`).")] = (
-        None
-    )
-    weight_column: Annotated[
-        str | None, Field(description="CSV: column of the weights (default `weight`, if there is one).")
-    ] = None
-    predict: Annotated[
-        list[str] | None,
-        Field(
-            description="CSV: times at which to predict, in the form of the time column; "
-            "repeat it or separate by commas."
-        ),
-    ] = None
     time_unit: Unit | None = None
     model: Model | None = None
     method: Method | None = None
@@ -196,13 +189,8 @@ class TrendQuery(AnswerQuery):
     ] = None
     resamples: Annotated[Resamples | None, Field(alias="options.resamples")] = None
 
-    def csv_only(self) -> list[str]:
-        """Parameters given that only a CSV body allows, by their names on the wire."""
-        names = self.model_fields_set - set(AnswerQuery.model_fields)
-        return sorted(TrendQuery.model_fields[name].alias or name for name in names)
-
     def fit_arguments(self) -> dict[str, Any]:
-        """Nest the fit's arguments that were given as in a JSON body."""
+        """Nest the fit's arguments that were given as in the JSON body of a single series."""
         given = self.model_dump(by_alias=True, include=self.model_fields_set, exclude_none=True)
         arguments = {name: value for name, value in given.items() if name in FitArguments.model_fields}
         if "seasonal" in arguments:
@@ -215,3 +203,38 @@ class TrendQuery(AnswerQuery):
             if name.startswith(OPTION_PREFIX)
         }
         return arguments | {"options": options} if options else arguments
+
+
+class TrendQuery(FitQuery, AnswerQuery):
+    """Query parameters of ``POST /v1/trends``; those of the fit are for CSV, JSON bodies carry them."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    time_column: Annotated[str | None, Field(description="CSV: column of the times (default `time`).")] = None
+    value_column: Annotated[str | None, Field(description="CSV: column of the values (default `value`).")] = (
+        None
+    )
+    weight_column: Annotated[
+        str | None, Field(description="CSV: column of the weights (default `weight`, if there is one).")
+    ] = None
+    predict: Annotated[
+        list[str] | None,
+        Field(
+            description="CSV: times at which to predict, in the form of the time column; "
+            "repeat it or separate by commas."
+        ),
+    ] = None
+
+    own_columns: Annotated[
+        list[str] | None,
+        Field(
+            alias="columns",
+            description="CSV: columns to fit along with the model `linear`, by name; repeat it or separate "
+            "by commas.",
+        ),
+    ] = None
+
+    def csv_only(self) -> list[str]:
+        """Parameters given that only a CSV body allows, by their names on the wire."""
+        names = self.model_fields_set - set(AnswerQuery.model_fields)
+        return sorted(TrendQuery.model_fields[name].alias or name for name in names)

@@ -10,6 +10,7 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
+from estimators import fit_trend
 from estimators.adapters.figure_sheet import PALETTES, Sheet
 from estimators.adapters.plotting import render, trend_figure
 from estimators.arrays import InputError
@@ -95,6 +96,27 @@ def test_the_title_is_the_slope_with_its_interval_unless_given() -> None:
     assert "Slope 0.500 (95 %: 0.442 to 0.558)" in labels(noisy())
     assert "Disk use" in labels(noisy(), title="Disk use")
     assert not any(text.startswith("Slope") for text in labels(noisy(), title=""))
+
+
+def test_the_title_of_a_curve_is_its_mean_slope_and_that_of_a_level_the_level() -> None:
+    time = np.arange(60.0)
+    values = 3.0 + 0.5 * time + 0.02 * (time - 30.0) ** 2 + np.random.default_rng(1).normal(0, 0.5, 60)
+    curve, level = (
+        fit_trend(time, values, model="linear", degree=2),
+        fit_trend(time, values, model="constant"),
+    )
+    assert isinstance(curve, Trend)
+    assert isinstance(level, Trend)
+    assert any(text.startswith("Mean slope 0.4") for text in labels(curve))
+    assert any(text.startswith("Level ") for text in labels(level))
+
+
+def test_a_title_too_long_for_the_picture_is_broken_into_lines_of_about_equal_length() -> None:
+    title = "The slope of a very long title that says more than a small picture has room for"
+    lines = [text for text in labels(noisy(), title=title, width_px=400) if text and text in title]
+    assert len(lines) >= 2
+    assert " ".join(lines) == title
+    assert title in labels(noisy(), title=title, width_px=1600)
 
 
 def test_dollars_in_a_callers_text_stay_dollars() -> None:

@@ -16,7 +16,7 @@ import pyarrow.parquet as pq
 import pytest
 from typer.testing import CliRunner, Result
 
-from estimators import Trend, fit_trend
+from estimators import RobustOptions, Trend, fit_trend
 from service.cli import app
 from tests.project.tree import ROOT
 from tests.service.tables import as_csv, as_file, as_json, as_parquet, as_stream, long_table
@@ -209,3 +209,63 @@ def test_a_terminal_sees_a_bar_and_the_output_is_the_same(table: Path, tmp_path:
     assert b"Fitting" in shown
     fit_many(table, "-o", tmp_path / "unseen.csv", "--by", "sensor")
     assert (tmp_path / "seen.csv").read_bytes() == (tmp_path / "unseen.csv").read_bytes()
+
+
+def test_every_question_of_a_single_fit_can_be_asked_of_many(tmp_path: Path) -> None:
+    rows = np.arange(60.0)
+    value = 0.2 * rows + 4.0 * np.sin(2.0 * np.pi * rows / 12.0) + np.random.default_rng(4).normal(size=60)
+    source, output = tmp_path / "in.csv", tmp_path / "out.ndjson"
+    source.write_bytes(as_csv(pa.table({"sensor": ["a"] * 60, "time": rows, "value": value})))
+    asked = ("--model", "linear", "--degree", 2, "--seasonal", 12, "--harmonics", 1, "--reach", 40)
+    made = ("--uncertainty", "bootstrap", "--resamples", 99, "--horizon", 300, "--noise", "auto")
+    result = fit_many(source, "-o", output, "--by", "sensor", *asked, *made)
+    assert result.exit_code == 0, result.output
+    (row,) = rows_of(output)
+    trend = fit_trend(
+        rows,
+        value,
+        model="linear",
+        degree=2,
+        seasonal=[12.0],
+        harmonics=1,
+        reach=[40.0],
+        horizon=300.0,
+        uncertainty="bootstrap",
+        options=RobustOptions(resamples=99),
+    )
+    assert isinstance(trend, Trend)
+    for name, estimate in trend.parameters.items():
+        assert (row[name], row[f"{name}_low"]) == (estimate.value, estimate.low)
+    assert row["model"] == "linear"
+    assert row["crossing_1_time"] == trend.crossings[0].time
+    assert row["crossing_1_probability"] == trend.crossings[0].probability
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (("--reach", 40, "--horizon", "soon"), "--horizon 'soon': the times of the table are plain numbers"),
+        (("--horizon", 40), "--horizon: is for values to reach"),
+        (("--harmonics", 2), "--harmonics: goes with seasonal"),
+        (("--resamples", 3), "--resamples: Input should be greater than or equal to 99"),
+        (("--seasonal", "fortnight"), "--seasonal: Input should be"),
+    ],
+)
+def test_a_question_that_makes_no_sense_ends_with_a_sentence(
+    table: Path, tmp_path: Path, arguments: tuple[object, ...], sentence: str
+) -> None:
+    result = fit_many(table, "-o", tmp_path / "out.csv", "--by", "sensor", *arguments)
+    assert sentence in " ".join(error_of(result).split())
+
+
+def test_a_series_of_one_row_is_a_row_with_its_reason(tmp_path: Path) -> None:
+    source, output = tmp_path / "in.parquet", tmp_path / "out.parquet"
+    count = 5_000
+    source.write_bytes(
+        as_parquet(pa.table({"sensor": range(count), "time": [0.0] * count, "value": [1.0] * count}))
+    )
+    result = fit_many(source, "-o", output, "--by", "sensor")
+    assert "no series has a trend" in error_of(result, code=1)
+    rows = rows_of(output)
+    assert len(rows) == count
+    assert {row["reason"] for row in rows} == {"too_few_points"}

@@ -29,6 +29,8 @@ def test_probabilities_lie_between_0_and_1_and_fall_with_the_residual_on_either_
 @settings(max_examples=100, deadline=None)
 @given(residual=RESIDUALS, scale=st.sampled_from([2.0**-30, 0.5, 2.0**40]))
 def test_the_unit_of_the_residuals_is_arbitrary(residual: np.ndarray, scale: float) -> None:
+    # A residual that underflows in one of the units changes sides.
+    residual = np.where(np.abs(residual) < 1e-200, 0.0, residual)
     np.testing.assert_allclose(
         inlier_probability(scale * residual, None, scale), inlier_probability(residual, None, 1.0), rtol=1e-9
     )
@@ -103,3 +105,24 @@ def test_a_long_series_is_judged_by_a_part_of_it_and_answered_in_full() -> None:
 
 def test_a_residual_beyond_all_floats_of_the_normal_law_has_next_to_no_probability() -> None:
     assert inlier_probability(np.array([0.1, -0.2, 1e9]), None, 1.0)[2] < 1e-12
+
+
+def test_the_followers_of_a_line_that_chance_drew_through_noise_leave_the_others_in_doubt() -> None:
+    rng = np.random.default_rng(2)
+    # Eight of fifty normal readings lie within a fiftieth of their scale of some line; none is an error.
+    residual = np.concatenate([0.02 * rng.normal(size=8), rng.normal(size=42)])
+    by_chance = inlier_probability(residual, None, 0.02)
+    # Thirty readings do so by no chance.
+    followed = np.concatenate([0.02 * rng.normal(size=30), rng.normal(size=20)])
+    in_earnest = inlier_probability(followed, None, 0.02)
+    assert by_chance[8:].mean() > 0.1
+    assert in_earnest[30:].mean() < 0.1
+    assert in_earnest[:30].min() > 0.8
+
+
+def test_few_followers_among_errors_far_away_are_believed() -> None:
+    rng = np.random.default_rng(3)
+    residual = np.concatenate([rng.normal(size=15), rng.uniform(-60.0, 60.0, 35)])
+    z = inlier_probability(residual, None, 1.0)
+    assert z[:15].mean() > 0.8
+    assert z[np.abs(residual) > 8.0].max() < 0.2

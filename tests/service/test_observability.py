@@ -25,7 +25,7 @@ def samples(text: str) -> dict[tuple[str, tuple[tuple[str, str], ...]], float]:
 
 
 def test_every_request_has_one_access_line(
-    make_client: MakeClient, capsys: pytest.CaptureFixture[str]
+    capsys: pytest.CaptureFixture[str], make_client: MakeClient
 ) -> None:
     client = make_client(log_level="info")
     response = client.post("/v1/trends", json=body())
@@ -40,7 +40,7 @@ def test_every_request_has_one_access_line(
 
 
 def test_logs_hold_neither_bodies_nor_queries_nor_keys(
-    make_client: MakeClient, capsys: pytest.CaptureFixture[str]
+    capsys: pytest.CaptureFixture[str], make_client: MakeClient
 ) -> None:
     client = make_client(log_level="debug", api_keys=KEY)
     headers = {"authorization": f"Bearer {KEY}"}
@@ -54,12 +54,12 @@ def test_logs_hold_neither_bodies_nor_queries_nor_keys(
         assert secret not in logged
 
 
-def test_console_logs_are_for_people(make_client: MakeClient, capsys: pytest.CaptureFixture[str]) -> None:
+def test_console_logs_are_for_people(capsys: pytest.CaptureFixture[str], make_client: MakeClient) -> None:
     make_client(log_level="info", log_format="console").get("/healthz")
     assert "path=/healthz" in capsys.readouterr().err
 
 
-def test_the_log_level_is_obeyed(make_client: MakeClient, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_log_level_is_obeyed(capsys: pytest.CaptureFixture[str], make_client: MakeClient) -> None:
     make_client(log_level="error").get("/healthz")
     assert capsys.readouterr().err == ""
 

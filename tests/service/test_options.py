@@ -26,7 +26,7 @@ def test_the_query_offers_csv_bodies_every_argument_and_option() -> None:
     offered = {field.alias or name for name, field in TrendQuery.model_fields.items()}
     arguments = set(FitArguments.model_fields) - {"options"}
     options = {f"options.{name}" for name in TrendOptions.model_fields}
-    columns = {"time_column", "value_column", "weight_column", "predict", "horizon"}
+    columns = {"time_column", "value_column", "weight_column", "predict", "horizon", "columns"}
     assert offered == set(AnswerQuery.model_fields) | arguments | options | columns
 
 

@@ -12,8 +12,8 @@ from fastapi.testclient import TestClient
 import estimators
 from estimators import kernels
 from service.api import docs
-from service.compute import Warmth
 from service.errors import ProblemType
+from service.warmth import Warmth
 from tests.service.conftest import MakeClient
 from tests.service.series import body
 

@@ -142,7 +142,6 @@ def test_other_methods_fit_the_logarithms_and_say_so(method: str) -> None:
         ("threshold", {"threshold": 1.0}),
         ("sigma", {"sigma": 1.0}),
         ("threshold", {"threshold": 1.0, "method": "msac"}),
-        ("uncertainty", {"uncertainty": "bootstrap"}),
     ],
 )
 def test_arguments_that_contradict_one_another_are_named(field: str, arguments: dict[str, object]) -> None:

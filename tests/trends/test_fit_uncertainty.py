@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 
 import numpy as np
 import pytest
@@ -124,6 +125,123 @@ def test_few_points_and_points_without_noise_fall_back_to_the_formula(uncertaint
         default = fit_trend(t, y)
         assert answer.parameters == default.parameters
         assert answer.uncertainty == default.uncertainty
+
+
+SHAPES = {
+    "constant": ({"model": "constant"}, "level"),
+    "parabola": ({"model": "linear", "degree": 2}, "slope"),
+    "season": ({"model": "line", "seasonal": [12.0], "harmonics": 1}, "slope"),
+    "additive": ({"model": "exponential", "noise": "additive"}, "rate"),
+    "multiplicative": ({"model": "exponential", "noise": "multiplicative"}, "rate"),
+}
+
+
+def _shape(name: str, n: int = 72) -> tuple[np.ndarray, np.ndarray]:
+    """Series with a clear trend of a shape (but for the level), noise and outliers."""
+    rng = np.random.default_rng(3)
+    t = np.arange(float(n))
+    noise = rng.normal(size=n)
+    y = {
+        "constant": 5.0 + noise,
+        "parabola": 0.2 * t + 0.002 * (t - 36.0) ** 2 + noise,
+        "season": 0.1 * t + 4.0 * np.sin(2.0 * np.pi * t / 12.0 + 1.0) + noise,
+        "additive": 10.0 * np.exp(0.03 * t) + noise,
+        "multiplicative": 10.0 * np.exp(0.03 * t + 0.1 * noise),
+    }[name]
+    y[::11] += 40.0
+    return t, y
+
+
+@pytest.mark.parametrize(
+    ("shape", "uncertainty"),
+    [pair for pair in itertools.product(SHAPES, UNCERTAINTIES) if pair != ("constant", "permutation")],
+)
+def test_every_shape_offers_every_method(shape: str, uncertainty: str) -> None:
+    settings, name = SHAPES[shape]
+    t, y = _shape(shape)
+    trend = fit_trend(t, y, uncertainty=uncertainty, options=FEW, **settings)
+    default = fit_trend(t, y, **settings)
+    assert trend.uncertainty.method == uncertainty
+    assert trend.parameters[name].value == default.parameters[name].value
+    np.testing.assert_array_equal(trend.points.inlier, default.points.inlier)
+    # Resamples of a level in which chance draws a fine line widen its interval; they do happen.
+    assert 0.3 < trend.parameters[name].stderr / default.parameters[name].stderr < 6.0
+    assert trend.p_value is None if shape == "constant" else trend.p_value < 0.05
+    resampled = uncertainty in ("bootstrap", "permutation")
+    assert (trend.uncertainty.resamples == 99) == resampled
+
+
+@pytest.mark.parametrize("uncertainty", ["hac", "bootstrap"])
+def test_bands_are_those_of_the_method_that_was_asked_for(uncertainty: str) -> None:
+    settings, _ = SHAPES["season"]
+    t, y = _shape("season")
+    trend = fit_trend(t, y, uncertainty=uncertainty, options=FEW, **settings)
+    default = fit_trend(t, y, **settings)
+    asked, usual = (fit.predict(t) for fit in (trend, default))
+    np.testing.assert_array_equal(asked.value, usual.value)
+    assert not np.allclose(asked.confidence_low, usual.confidence_low)
+
+
+@pytest.mark.parametrize("shape", ["parabola", "season", "additive"])
+def test_resampled_shapes_are_the_same_with_the_same_seed_and_in_any_unit(shape: str) -> None:
+    settings, name = SHAPES[shape]
+    t, y = _shape(shape)
+    one = fit_trend(t, y, uncertainty="bootstrap", options=FEW, **settings)
+    assert one.to_dict() == fit_trend(t, y, uncertainty="bootstrap", options=FEW, **settings).to_dict()
+    other = fit_trend(t, 1024.0 * y, uncertainty="bootstrap", options=FEW, **settings)
+    scale = 1.0 if name == "rate" else 1024.0
+    assert other.parameters[name].stderr == pytest.approx(scale * one.parameters[name].stderr, rel=1e-6)
+
+
+def test_a_season_stays_in_place_while_the_trend_is_permuted() -> None:
+    rng = np.random.default_rng(5)
+    t = np.arange(60.0)
+    y = 20.0 * np.sin(2.0 * np.pi * t / 12.0) + 0.04 * t + rng.normal(size=60)
+    trend = fit_trend(t, y, uncertainty="permutation", options=FEW, **SHAPES["season"][0])
+    # A permuted season would be noise of 14 sigma, in which no trend so small could be seen.
+    assert trend.p_value <= 0.02
+
+
+def test_a_level_has_no_trend_to_permute_and_says_so() -> None:
+    with pytest.raises(InputError, match="has none") as caught:
+        fit_trend(*_shape("constant"), model="constant", uncertainty="permutation")
+    assert caught.value.field == "uncertainty"
+
+
+def test_the_noise_of_an_exponential_is_told_before_its_uncertainty_is_asked() -> None:
+    t, y = _shape("additive")
+    settings = {"model": "exponential", "options": FEW}
+    trend, plain = fit_trend(t, y, uncertainty="bootstrap", **settings), fit_trend(t, y, **settings)
+    assert trend.noise == plain.noise
+    given = fit_trend(t, y, uncertainty="bootstrap", noise=plain.noise.domain, **settings)
+    assert trend.parameters == given.parameters
+
+
+def test_both_answers_of_an_undetermined_noise_have_the_uncertainty_that_was_asked_for() -> None:
+    rng = np.random.default_rng(0)
+    t = np.arange(40.0)
+    y = 20.0 * np.exp(0.01 * t) + rng.normal(size=40)
+    trend = fit_trend(t, y, model="exponential", uncertainty="hac")
+    assert trend.noise.selection == "undetermined"
+    assert trend.alternative.uncertainty.method == trend.uncertainty.method == "hac"
+    assert "undetermined_noise" in [item.code for item in trend.notices]
+
+
+@pytest.mark.parametrize(("shape", "model"), [("additive", "exponential"), ("constant", "constant")])
+def test_the_shape_is_told_before_its_uncertainty_is_asked(shape: str, model: str) -> None:
+    t, y = _shape(shape)
+    trend = fit_trend(t, y, model="auto", uncertainty="hac")
+    assert trend.model == model
+    assert trend.uncertainty.method == "hac"
+    assert [row.log_evidence for row in trend.evidence] == [
+        row.log_evidence for row in fit_trend(t, y, model="auto").evidence
+    ]
+
+
+def test_a_level_that_was_told_from_the_data_keeps_its_formula_under_permutation() -> None:
+    trend = fit_trend(*_shape("constant"), model="auto", uncertainty="permutation", options=FEW)
+    assert trend.model == "constant"
+    assert trend.uncertainty.method == "effective-n"
 
 
 def test_unknown_methods_and_counts_of_resamples_are_refused() -> None:

@@ -125,7 +125,7 @@ def test_the_frame_of_a_trend_with_own_columns_has_their_fit() -> None:
         ({"model": "linear", "columns": {"x": ["a"] * 160}}, "columns", "expected numbers"),
         ({"columns": T}, "columns", "no meaning for the model line"),
         ({"harmonics": 2}, "harmonics", "goes with seasonal"),
-        ({"model": "linear", "degree": 2, "uncertainty": "hac"}, "uncertainty", "effective-n only"),
+        ({"model": "linear", "degree": 0, "uncertainty": "permutation"}, "uncertainty", "has none"),
     ],
 )
 def test_what_cannot_be_fitted_is_refused_by_name(

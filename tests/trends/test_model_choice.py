@@ -36,6 +36,14 @@ def test_the_true_shape_is_told_from_contaminated_data(shape: str) -> None:
     assert told.count(shape) >= 5
 
 
+def test_a_clean_level_is_hardly_ever_called_a_trend() -> None:
+    for n in (30, 120):
+        t = np.arange(float(n))
+        levels = [np.random.default_rng([seed, n]).normal(size=n) for seed in range(40)]
+        told = [fit_trend(t, y, model="auto") for y in levels]
+        assert sum(trend.model != "constant" for trend in told if isinstance(trend, Trend)) <= 3
+
+
 def test_growth_with_noise_that_grows_along_is_an_exponential() -> None:
     growth = 5.0 * np.exp(0.02 * T)
     trend = chosen(contaminated(growth, 1, multiplicative=True))
@@ -103,5 +111,3 @@ def test_one_point_is_a_level_and_none_is_no_fit() -> None:
 def test_what_only_one_shape_takes_is_refused() -> None:
     with pytest.raises(InputError, match="no meaning for the model auto"):
         chosen(T, degree=3)
-    with pytest.raises(InputError, match="name the model"):
-        chosen(T, uncertainty="bootstrap")

@@ -1,6 +1,7 @@
 """Trend and seasons fitted together."""
 
 import datetime as dt
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -175,3 +176,20 @@ def test_the_carbon_dioxide_of_mauna_loa_breathes_by_three_parts_per_million(
     assert 4 <= peak.astype("datetime64[M]").astype(int) % 12 + 1 <= 6
     assert 1.2 < trend.parameters["slope"].value * 365.25 * 86400.0 < 1.8
     assert trend.consensus.inlier_ratio > 0.98
+
+
+@pytest.mark.parametrize("series", [monthly, weekly])
+def test_readings_spoilt_at_mauna_loa_are_flagged_and_the_peaks_of_its_season_are_not(
+    trend_data: Path, series: Callable[[Path], tuple[Any, FloatArray]]
+) -> None:
+    moments, values = series(trend_data)
+    known = np.flatnonzero(np.isfinite(values))
+    spoilt = known[7::25]
+    values[spoilt] += np.where(np.arange(spoilt.size) % 3 == 0, -9.0, 12.0)
+    trend = fitted(moments, values, model="linear", degree=2, seasonal="auto")
+    assert [season.period for season in trend.seasons] == [365.25 * 86400.0]
+    assert trend.parameters["season_1_amplitude"].value == pytest.approx(3.15, abs=0.2)
+    assert not trend.points.inlier[spoilt].any()
+    months = moments.astype("datetime64[M]").astype(int) % 12 + 1
+    peaks = np.setdiff1d(known[np.isin(months[known], (5, 9))], spoilt)
+    assert trend.points.inlier[peaks].mean() > 0.97

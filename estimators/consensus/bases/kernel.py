@@ -2,83 +2,23 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numba import types
 
 from estimators.arrays import BoolArray, FloatArray, IntArray
+from estimators.consensus.bases.shortlist import PER_OCTAVE, pick_starts, scale_gains
 from estimators.consensus.bases.weighing import acquit, fill_residual, weigh_candidates
 from estimators.consensus.structure.finish import TABLE, fill_tables
 from estimators.consensus.structure.hypotheses import OCTAVES
-from estimators.kernels import device, kernel, ro
+from estimators.kernels import kernel, ro
 from estimators.regression.loss import CELLS_PER_SIGMA
 from estimators.regression.weighted_step import largest_value, weighted_step
-
-PER_OCTAVE = 3
-"""Hypotheses taken at each octave of scale."""
 
 _ROUNDS = 200
 _TOLERANCE = 1e-10
 _EPS = 2.220446049250313e-16
 
 _f8 = types.float64
-
-
-@device
-def scale_gains(columns: FloatArray, y: FloatArray, thetas: FloatArray, gain: FloatArray) -> None:
-    """Fill ``gain[o, h]``: evidence for hypothesis h at scale 2**-o of a unit range.
-
-    The Kullback-Leibler gain of the count within the scale over a uniform background, as for the line
-    (:mod:`estimators.consensus.structure.hypotheses`; a binomial form of the a-contrario score, Moisan &
-    Stival 2004; METHODS.md 3.5). The sample itself, which has no residual, does not count.
-    """
-    p, n = columns.shape
-    m = n - p
-    inside = np.empty(OCTAVES + 1, np.int64)
-    residual = np.empty(n)
-    for h in range(thetas.shape[0]):
-        fill_residual(columns, y, thetas[h], residual)
-        inside[:] = 0
-        for i in range(n):
-            size = abs(residual[i])
-            octave = OCTAVES if size == 0.0 else -math.frexp(size)[1]
-            inside[min(max(octave, 0), OCTAVES)] += 1
-        k = inside[OCTAVES] - p
-        for o in range(OCTAVES - 1, -1, -1):
-            k += inside[o]
-            chance = min(0.95, 2.0 * 2.0**-o)
-            gain[o, h] = 0.0
-            if o >= 2 and k > m * chance:
-                value = k * math.log(k / (m * chance))
-                if k < m:
-                    value += (m - k) * math.log((m - k) / (m * (1.0 - chance)))
-                gain[o, h] = value
-
-
-@device
-def pick_starts(
-    gain: FloatArray, octaves: int, per_octave: int, picks: IntArray, pick_octave: IntArray
-) -> int:
-    """Choose hypotheses at each octave of scale whose evidence peaks there; returns how many."""
-    count = gain.shape[1]
-    made = 0
-    taken = np.zeros(count, np.bool_)
-    for o in range(2, octaves):
-        for _ in range(per_octave):
-            best = -1
-            for h in range(count):
-                finer = gain[o + 1, h] if o + 1 < octaves else 0.0
-                peaks = gain[o, h] > 0.0 and gain[o, h] >= gain[o - 1, h] and gain[o, h] > finer
-                if peaks and not taken[h] and (best < 0 or gain[o, h] > gain[o, best]):
-                    best = h
-            if best < 0 or made == picks.size:
-                break
-            taken[best] = True
-            picks[made] = best
-            pick_octave[made] = o
-            made += 1
-    return made
 
 
 @kernel(
@@ -112,7 +52,7 @@ def find_basis(
     scale_gains(columns, y, hypotheses, gain)
     picks = np.empty(OCTAVES * PER_OCTAVE, np.int64)
     octave = np.empty(picks.size, np.int64)
-    made = pick_starts(gain, OCTAVES, PER_OCTAVE, picks, octave)
+    made = pick_starts(columns, y, hypotheses, gain, picks, octave)
     starts = np.empty((made + robust.shape[0], p))
     scales = np.empty(starts.shape[0])
     for k in range(made):

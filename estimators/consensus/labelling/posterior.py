@@ -2,10 +2,9 @@
 
 A mixture as in MLESAC (Torr & Zisserman 2000; METHODS.md 3.2), z = g f_in / (g f_in + b), in which neither
 density is taken for granted. The background b need not be uniform: errors that stand apart from the model
-leave it empty near by. On either side it is a step function that does not fall away from the model, its
-steps told by EM; the innermost, where inliers hide it, reaches as far as they do. The law of the inliers
-need not be normal: where residuals thin out beyond three scales instead, Student's t with 2 and 4 degrees of
-freedom compete, weighted by their likelihood.
+leave it empty near by. The law of the inliers need not be normal: Student's t with 2 and 4 degrees of freedom
+compete with it (:mod:`estimators.consensus.labelling.laws`). Nor need its scale be the one that was found: a
+model of few followers may be a fine line that chance drew through the noise of a broader one.
 """
 
 from __future__ import annotations
@@ -13,49 +12,19 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.special import ndtr, stdtr
 
 from estimators.arrays import FloatArray
+from estimators.consensus.labelling.laws import CELLS, FINE, NEAR, TABLE, tabulate
 from estimators.kernels import device
 
-_REACH = 8  # scales that are looked at; farther out the background is taken as level
-_CELLS = 2 * _REACH  # of half a scale, in which residuals are counted
-_FINE = 8  # entries of the table of posteriors per scale
-_TABLE = _REACH * _FINE
-_STEP_1, _STEP_2 = 7, 10  # cells at which the background may rise: 3.5 and 5 scales
-_CORE = 4  # cells from which the share of inliers is guessed
-_NEAR = 6  # cell from which residuals that thin out are taken for a heavy tail: 3 scales
-_NEAR_END = 9
-_THINNING = 1.3
-_EM_STEPS = 8
-_PSEUDO = 1.0  # readings of the average background that the innermost step starts from
-_LEAST_BACKGROUND = 0.5  # readings over the range
 _LEAST_RANGE = 20.0  # scales: a clean series does not say how near an error would have been
 _LONG = 65536  # points beyond which a part of them is counted
 
-_STUDENT = ((2.0, 0.7), (2.0, 1.0), (2.0, 1.4), (4.0, 1.0))
-"""Degrees of freedom and scale, in noise scales, of the laws that compete with the normal law."""
-_STUDENT_PRIOR = 0.3
-_LAWS = 1 + len(_STUDENT)
-
-
-def _normal_density(u: FloatArray) -> FloatArray:
-    return np.asarray(np.exp(-0.5 * u * u) / math.sqrt(2.0 * math.pi))
-
-
-def _student_density(u: FloatArray, dof: float) -> FloatArray:
-    log_height = math.lgamma(0.5 * (dof + 1.0)) - math.lgamma(0.5 * dof) - 0.5 * math.log(dof * math.pi)
-    return np.asarray(math.exp(log_height) * (1.0 + u * u / dof) ** (-0.5 * (dof + 1.0)))
-
-
-_EDGES = np.arange(_CELLS + 1) / 2.0
-_GRID = np.arange(_TABLE + 1) / _FINE
-_MASS = np.array([np.diff(ndtr(_EDGES)), *(np.diff(stdtr(dof, _EDGES / scale)) for dof, scale in _STUDENT)])
-"""Probability of each cell on one side, shape (laws, cells)."""
-_DENSITY = np.array(
-    [_normal_density(_GRID), *(_student_density(_GRID / scale, dof) / scale for dof, scale in _STUDENT)]
-)
-"""Density on the grid of the table, shape (laws, _TABLE + 1)."""
+_FEW = 20.0
+"""Followers below which broader scales are heard: of 50 normal readings the best 8 or so lie on some line."""
+_MOST_OCTAVES = 9
+_BROADEST = 5.0
+"""Octaves end where so many scales reach across the values."""
 
 
 @device
@@ -72,36 +41,95 @@ def posterior_of(residual: FloatArray, root_weight: FloatArray, sigma: float, po
     posterior : ndarray of float64, shape (n,)
         Receives probabilities that fall with |residual| on either side.
     """
-    n = residual.size
+    counts = np.zeros((2, CELLS + 1))
+    table = np.empty((2, TABLE + 1))
+    total, reach = _count(residual, root_weight, sigma, counts)
+    near = 0.0
+    for k in range(NEAR):
+        near += counts[0, k] + counts[1, k]
+    if near * residual.size < _FEW * total:
+        _average_scales(residual, root_weight, sigma, reach, counts, table, posterior)
+    else:
+        tabulate(counts, total, max(reach, _LEAST_RANGE), table)
+        _look_up(residual, root_weight, sigma, table, posterior)
+
+
+@device
+def _average_scales(
+    residual: FloatArray,
+    root_weight: FloatArray,
+    sigma: float,
+    reach: float,
+    counts: FloatArray,
+    table: FloatArray,
+    posterior: FloatArray,
+) -> None:
+    """Average the posteriors at the scale found and at its octaves, by the evidence for each.
+
+    The evidence is the likelihood times the posterior volume of level and slope (Laplace's approximation with
+    flat priors, as for structures): s^2 over the number of followers. All octaves are as likely beforehand.
+    """
+    octaves = 1
+    while octaves < _MOST_OCTAVES and _BROADEST * 2.0**octaves < reach:
+        octaves += 1
+    one = np.empty(residual.size)
+    posterior[:] = 0.0
+    best = -np.inf
+    weight_sum = 0.0
+    for octave in range(octaves):
+        factor = 2.0**octave
+        counts[:] = 0.0
+        total, span = _count(residual, root_weight, sigma * factor, counts)
+        span = max(span, _LEAST_RANGE)
+        evidence, followers = tabulate(counts, total, span, table)
+        # From probabilities of cells to densities, which compare across octaves.
+        beyond = counts[0, CELLS] + counts[1, CELLS]
+        evidence -= (total - beyond) * math.log(0.5 * factor)
+        evidence -= beyond * math.log(factor * max(span - CELLS, 1.0))
+        evidence += 2.0 * math.log(factor) - math.log(max(followers, 1.0))
+        _look_up(residual, root_weight, sigma * factor, table, one)
+        if evidence > best:
+            shrink = math.exp(best - evidence) if weight_sum > 0.0 else 0.0
+            weight_sum *= shrink
+            posterior *= shrink
+            best = evidence
+        weight = math.exp(evidence - best)
+        weight_sum += weight
+        posterior += weight * one
+    posterior /= weight_sum
+
+
+@device
+def _look_up(
+    residual: FloatArray, root_weight: FloatArray, sigma: float, table: FloatArray, posterior: FloatArray
+) -> None:
+    """Read the probability of every point off the table."""
     weighted = root_weight.size > 0
-    counts = np.zeros((2, _CELLS + 1))
-    table = np.zeros((2, _TABLE + 1))
-    total, reach = _count(residual, root_weight, weighted, sigma, counts)
-    _tabulate(counts, total, reach, table)
     inverse = 1.0 / sigma
     root = 1.0
-    for i in range(n):
+    for i in range(residual.size):
         if weighted:
             root = root_weight[i]
         u = residual[i] * root * inverse
         side = 1 if u > 0.0 else 0
-        x = abs(u) * _FINE
-        if x < _TABLE:
+        x = abs(u) * FINE
+        if x < TABLE:
             k = int(x)
             posterior[i] = table[side, k] + (x - k) * (table[side, k + 1] - table[side, k])
         else:
             # Beyond the table odds fall at least as fast as the density of the heaviest law.
-            ratio = _TABLE / x
-            odds = table[side, _TABLE] / (1.0 - table[side, _TABLE]) * ratio * ratio * ratio
+            ratio = TABLE / x
+            odds = table[side, TABLE] / (1.0 - table[side, TABLE]) * ratio * ratio * ratio
             posterior[i] = odds / (1.0 + odds)
 
 
 @device
 def _count(
-    residual: FloatArray, root_weight: FloatArray, weighted: bool, sigma: float, counts: FloatArray
+    residual: FloatArray, root_weight: FloatArray, sigma: float, counts: FloatArray
 ) -> tuple[float, float]:
     """Count residuals per side and cell, the last cell for all beyond; return their number and range."""
     n = residual.size
+    weighted = root_weight.size > 0
     stride = 1 + n // _LONG
     low = np.inf
     high = -np.inf
@@ -114,117 +142,6 @@ def _count(
         u = residual[i] * root * inverse
         low = min(low, u)
         high = max(high, u)
-        counts[1 if u > 0.0 else 0, int(min(2.0 * abs(u), _CELLS))] += 1.0
+        counts[1 if u > 0.0 else 0, int(min(2.0 * abs(u), CELLS))] += 1.0
         total += 1.0
-    return total, max(high - low, _LEAST_RANGE)
-
-
-@device
-def _tabulate(counts: FloatArray, total: float, reach: float, table: FloatArray) -> None:
-    """Average the posteriors under each law of the inliers, weighted by prior and likelihood."""
-    near = 0.0
-    farther = 0.0
-    for side in range(2):
-        for k in range(_NEAR, _NEAR_END):
-            near += counts[side, k]
-        for k in range(_NEAR_END, _CELLS):
-            farther += counts[side, k]
-    thins = near >= 2.0 and near / (_NEAR_END - _NEAR) > _THINNING * farther / (_CELLS - _NEAR_END)
-    laws = _LAWS if thins else 1
-    steps = np.empty((2, 3))
-    best = -np.inf
-    weight_sum = 0.0
-    for law in range(laws):
-        inliers, likelihood = _fit_background(counts, total, reach, _MASS[law], steps)
-        if laws > 1:
-            prior = 1.0 - _STUDENT_PRIOR if law == 0 else _STUDENT_PRIOR / (_LAWS - 1)
-            likelihood += math.log(prior)
-        if likelihood > best:
-            # What was gathered so far was measured against the last best law.
-            shrink = math.exp(best - likelihood) if weight_sum > 0.0 else 0.0
-            weight_sum *= shrink
-            table *= shrink
-            best = likelihood
-        weight = math.exp(likelihood - best)
-        weight_sum += weight
-        for side in range(2):
-            for k in range(_TABLE + 1):
-                cell = min(2 * k // _FINE, _CELLS - 1)
-                step = 0 if cell < _STEP_1 else (1 if cell < _STEP_2 else 2)
-                inside = inliers * _DENSITY[law, k]
-                table[side, k] += weight * inside / (inside + 2.0 * steps[side, step])
-    table /= weight_sum
-    table[0, 0] = table[1, 0] = min(table[0, 0], table[1, 0])
-    for side in range(2):
-        # Averages of falling functions fall; rounding must not say otherwise, nor that one is certain.
-        table[side, 0] = min(table[side, 0], 1.0 - 1e-12)
-        for k in range(_TABLE):
-            table[side, k + 1] = min(table[side, k + 1], table[side, k])
-
-
-@device
-def _fit_background(
-    counts: FloatArray, total: float, reach: float, mass: FloatArray, steps: FloatArray
-) -> tuple[float, float]:
-    """EM for the number of inliers and the background per cell; returns that number and the likelihood.
-
-    ``steps``, shape (2, 3), receives the background of either side on its three steps.
-    """
-    least = _LEAST_BACKGROUND / (2.0 * reach)
-    core = 0.0
-    expected = 0.0
-    inside = 0.0
-    for k in range(_CELLS):
-        inside += 2.0 * mass[k]
-        if k < _CORE:
-            core += counts[0, k] + counts[1, k]
-            expected += 2.0 * mass[k]
-    tail = max(1.0 - inside, 0.0)
-    beyond = counts[0, _CELLS] + counts[1, _CELLS]
-    inliers = max(min(0.98 * total, core / expected), 0.5)
-    steps[:] = max(total - inliers, _LEAST_BACKGROUND) / (2.0 * reach)
-    gathered = np.empty(3)
-    for _ in range(_EM_STEPS):
-        found = 0.0
-        for side in range(2):
-            gathered[:] = 0.0
-            for k in range(_CELLS):
-                step = 0 if k < _STEP_1 else (1 if k < _STEP_2 else 2)
-                share = steps[side, step] / (inliers * mass[k] + steps[side, step])
-                gathered[step] += counts[side, k] * share
-                found += counts[side, k] * (1.0 - share)
-            # The average is that of the step before: it moves slowly, and either side sees the same.
-            average = max(total - inliers, _LEAST_BACKGROUND) / (2.0 * reach)
-            _rising_steps(gathered, average, least, steps[side])
-        inliers = max(found + min(beyond, inliers * tail), 0.5)
-    likelihood = 0.0
-    for side in range(2):
-        for k in range(_CELLS):
-            if counts[side, k] > 0.0:
-                step = 0 if k < _STEP_1 else (1 if k < _STEP_2 else 2)
-                likelihood += counts[side, k] * math.log((inliers * mass[k] + steps[side, step]) / total)
-    if beyond > 0.0:
-        rest = inliers * tail + max(beyond - inliers * tail, 2.0 * least)
-        likelihood += beyond * math.log(rest / total)
-    return inliers, likelihood
-
-
-@device
-def _rising_steps(gathered: FloatArray, average: float, least: float, steps: FloatArray) -> None:
-    """Background per cell on three steps that do not fall: neighbours that would are pooled."""
-    cells_0, cells_1, cells_2 = 1.0 * _STEP_1, 1.0 * (_STEP_2 - _STEP_1), 1.0 * (_CELLS - _STEP_2)
-    # So many readings at the average rate take _PSEUDO / average cells.
-    first = (gathered[0] + _PSEUDO) / (cells_0 + _PSEUDO / average)
-    second = gathered[1] / cells_1
-    third = gathered[2] / cells_2
-    if second > third:
-        second = third = (gathered[1] + gathered[2]) / (cells_1 + cells_2)
-        if first > second:
-            first = second = third = (first * cells_0 + second * (cells_1 + cells_2)) / _CELLS
-    elif first > second:
-        first = second = (first * cells_0 + second * cells_1) / (cells_0 + cells_1)
-        if first > third:
-            first = second = third = (first * (cells_0 + cells_1) + third * cells_2) / _CELLS
-    steps[0] = max(first, least)
-    steps[1] = max(second, least)
-    steps[2] = max(third, least)
+    return total, high - low

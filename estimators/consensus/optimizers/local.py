@@ -26,7 +26,7 @@ from estimators.consensus.scan import (
     select_members,
     value_of,
 )
-from estimators.consensus.solve import fit_members
+from estimators.consensus.solve import fit_members, fit_two_near
 from estimators.kernels import device
 
 FINAL_STEPS = 20
@@ -133,12 +133,14 @@ def _repeat(
 ) -> bool:
     """Run one inner repetition: a non-minimal sample, then steps with a shrinking threshold."""
     p = theta.size
+    # Fields are taken out once: in a loop, each access would count a reference up and down.
+    few, among, members, system = bench.few, bench.wide, bench.members, bench.system
     key = random_key(seed, SUBSETS, h)
     size = min(plan.sample, max(p + 1, found // 2))
-    draw_stratified(key, subset_counter_compiled(repetition, 0, plan.steps), found, size, bench.few)
+    draw_stratified(key, subset_counter_compiled(repetition, 0, plan.steps), found, size, few)
     for k in range(size):
-        bench.few[k] = bench.pool[bench.few[k]]
-    if not fit_members(rows, bench.few, size, theta, bench.system, candidate):
+        few[k] = bench.pool[few[k]]
+    if not fit_members(rows, few, size, theta, system, candidate):
         return False
     for step in range(plan.steps):
         narrow = shrunk_threshold_compiled(T, plan.multiplier, step, plan.steps)
@@ -146,15 +148,21 @@ def _repeat(
         if plan.limit > 0:
             size = min(plan.limit, wide)
             counter = subset_counter_compiled(repetition, step + 1, plan.steps)
-            draw_stratified(key, counter, wide, size, bench.few)
+            draw_stratified(key, counter, wide, size, few)
             for k in range(size):
-                point = bench.wide[bench.few[k]]
-                bench.members[count] = point
+                few[k] = among[few[k]]
+            if p == 2:
+                if not fit_two_near(rows, few, size, narrow, candidate):
+                    break
+                continue
+            for k in range(size):
+                point = few[k]
+                members[count] = point
                 count += 1 if abs(residual_at(rows, candidate, point)) <= narrow else 0
         else:
-            count = select_members(rows, candidate, narrow, residual, bench.members)
+            count = select_members(rows, candidate, narrow, residual, members)
         copy_into(bench.trial, candidate)
-        if count <= p or not fit_members(rows, bench.members, count, bench.trial, bench.system, candidate):
+        if count <= p or not fit_members(rows, members, count, bench.trial, system, candidate):
             break
     return True
 

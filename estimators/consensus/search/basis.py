@@ -9,6 +9,7 @@ import numpy as np
 
 from estimators.arrays import BoolArray, FloatArray, IntArray
 from estimators.consensus.bases.kernel import find_basis, finish_basis, mean_square_about
+from estimators.consensus.bases.stretches import stretch_hypotheses
 from estimators.consensus.bases.weighing import FINALISTS
 from estimators.consensus.found import Found, LinearData, OtherStructure, Scale
 from estimators.consensus.samplers.draws import bind_sampler
@@ -22,6 +23,7 @@ from estimators.regression.huber import huber
 from estimators.regression.least_squares import least_squares
 from estimators.regression.loss import Loss, LossKind
 from estimators.regression.minimal_fits import solve_samples
+from estimators.regression.quantiles import quantile_fits
 from estimators.regression.s_estimator import s_estimate
 from estimators.result import Ledger, NoFit, NoFitReason
 
@@ -33,6 +35,7 @@ SAMPLES, MOST_SAMPLES = 500, 4000
 the chance that a sample is clean falls with its size."""
 
 _S_STARTS = 50
+_S_ESTIMATE = 0  # its place among the robust fits
 _GOLDEN_SECTION = 0.6180339887498949
 _FINEST = 1e-7
 _CENTRAL = 50.0
@@ -41,13 +44,18 @@ _APART = 2.0
 _SCALES = (1.0, 0.25)
 """Scales, of its own, at which a robust fit enters the comparison."""
 
+_SHARES = np.array([0.1, 0.2, 0.3, 0.4, 0.6, 0.7, 0.8, 0.9])
+"""Regression quantiles that enter it: the middle of what follows the trend where 80 % to 20 % of the points
+err to one side."""
+
 
 @dataclass(frozen=True, slots=True)
 class BasisSearch:
     """Mixture with sticky labels over any columns; no threshold, no seed.
 
-    Hypotheses come from minimal samples and from robust fits (least squares, Huber, S-estimate). Those that
-    stand out at some scale are fitted together with what contaminates the series, and compared by evidence.
+    Hypotheses come from minimal samples, from stretches of the series and from robust fits (least squares,
+    Huber, S-estimate, regression quantiles). Those that stand out at some scale are fitted together with what
+    contaminates the series, and compared by evidence.
     """
 
     @property
@@ -87,9 +95,11 @@ class BasisSearch:
         count = min(SAMPLES * max(p - 1, 1), MOST_SAMPLES)
         draws = bind_sampler(FarApart.code, some.t, p, _NO_ORDER, 0, count, 0)
         samples = draws.block(0, count)
-        hypotheses = solve_samples(some.columns, some.y, samples)
-        robust, robust_scale = _robust_fits(some, hypotheses[:_S_STARTS], scale.floor)
-        middle = robust[-1]
+        minimal = solve_samples(some.columns, some.y, samples)
+        robust, robust_scale = _robust_fits(some, minimal[:_S_STARTS], scale.floor)
+        stretches = stretch_hypotheses(some.columns, some.y, some.t, root[rows] ** 2)
+        hypotheses = np.vstack([minimal, stretches])
+        middle = robust[_S_ESTIMATE]
         off = some.y - _values(some.columns, middle)
         unit, reach = _unit_of(off, scale.floor)
         framed = np.clip(off, -reach, reach) / unit
@@ -103,8 +113,8 @@ class BasisSearch:
             framed,
             root[rows],
             np.ascontiguousarray((hypotheses - middle) / unit),
-            np.ascontiguousarray(np.repeat((robust - middle) / unit, len(_SCALES), axis=0)),
-            np.outer(robust_scale / unit, _SCALES).ravel(),
+            np.ascontiguousarray((robust - middle) / unit),
+            robust_scale / unit,
             finest,
             (scale.sigma or 0.0) / unit,
             thetas,
@@ -153,7 +163,7 @@ class BasisSearch:
             loss=Loss(LossKind.tabulated, table=weight),
             ledger=Ledger(
                 drawn=count,
-                degenerate=count - hypotheses.shape[0],
+                degenerate=count - minimal.shape[0],
                 scored=hypotheses.shape[0],
                 point_evaluations=hypotheses.shape[0] * some.n,
                 optimizations=int(counts[0]),
@@ -186,13 +196,21 @@ def _values(columns: FloatArray, theta: FloatArray) -> FloatArray:
 
 
 def _robust_fits(data: LinearData, starts: FloatArray, floor: float) -> tuple[FloatArray, FloatArray]:
-    """Least squares, Huber's and the S-estimate, the last one last, with their scales."""
+    """Least squares, Huber's, the S-estimate and quantiles, and the scales at which they are compared."""
     least, residual, _ = least_squares(data.columns, data.y, data.weights)
     spread = max(float(np.sqrt(np.mean(residual**2))), floor)
     middle = huber(data.columns, data.y, data.weights, sigma=None, floor=floor)
     first = np.vstack([starts, least, middle.theta])
     s = s_estimate(data.columns, data.y, data.weights, starts=first, floor=floor)
-    return np.vstack([least, middle.theta, s.theta]), np.array([spread, middle.sigma, s.sigma])
+    quantiles, cores = quantile_fits(
+        data.columns, data.y, data.weights, shares=_SHARES, start=middle.theta, floor=floor
+    )
+    thetas = np.vstack([s.theta, least, middle.theta])
+    scales = np.outer([s.sigma, spread, middle.sigma], _SCALES)
+    return (
+        np.vstack([np.repeat(thetas, len(_SCALES), axis=0), quantiles]),
+        np.concatenate([scales.ravel(), cores]),
+    )
 
 
 def _unit_of(off: FloatArray, floor: float) -> tuple[float, float]:

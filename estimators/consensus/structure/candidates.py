@@ -6,8 +6,10 @@ import numpy as np
 
 from estimators.arrays import FloatArray, IntArray
 from estimators.consensus.structure.criterion import IMPOSSIBLE, criterion, same_structure
+from estimators.consensus.structure.em import em_step
 from estimators.consensus.structure.hypotheses import OCTAVES, PAIRS, propose_lines, scale_evidence
-from estimators.consensus.structure.mixture import LEVEL, SIGMA, SLOPE, em_step, start
+from estimators.consensus.structure.mixture import LEVEL, SIGMA, SLOPE, start
+from estimators.consensus.structure.ranking import sort_values
 from estimators.consensus.structure.shortlist import pick_lines
 from estimators.kernels import device
 
@@ -172,7 +174,7 @@ def _propose_parallels(t: FloatArray, y: FloatArray, bank: FloatArray, first: Fl
         residual = np.empty(n)
         for i in range(n):
             residual[i] = y[i] - bank[q, LEVEL] - bank[q, SLOPE] * t[i]
-        residual.sort()
+        sort_values(residual)
         width = 2.0 * bank[q, SIGMA]
         free = np.abs(residual) > width
         for _ in range(PARALLELS):

@@ -13,6 +13,7 @@ from estimators.consensus.structure.candidates import (
     patience,
 )
 from estimators.consensus.structure.criterion import CORRELATION_PRICE, IMPOSSIBLE, criterion, distance
+from estimators.consensus.structure.em import em_step
 from estimators.consensus.structure.mixture import (
     ABOVE,
     BELOW,
@@ -27,7 +28,6 @@ from estimators.consensus.structure.mixture import (
     SLOPE,
     STAY,
     UNIFORM,
-    em_step,
 )
 from estimators.kernels import device
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from estimators.arrays import FloatArray, IntArray
 from estimators.consensus.structure.hypotheses import PAIRS, propose_lines
+from estimators.consensus.structure.ranking import sort_values
 from estimators.kernels import device
 
 _GOLDEN = 0.6180339887498949
@@ -45,7 +46,7 @@ def fit_frame(t: FloatArray, y: FloatArray, floor: float, frame: FloatArray) -> 
     about = np.empty(n)
     for k in range(n):
         about[k] = y[k] - middle_slope * t[k]
-    about.sort()
+    sort_values(about)
     middle = 0.5 * (about[(n - 1) // 2] + about[n // 2])
     central = about[n - 1 - n // 20] - about[n // 20]
     reach = max(about[n - 1] - middle, middle - about[0])
@@ -83,7 +84,8 @@ def to_frame(t: FloatArray, y: FloatArray, frame: FloatArray, out_t: FloatArray,
 @device
 def _quantum(values: FloatArray) -> tuple[float, float]:
     """Share of tied neighbours among the sorted values, and the smallest gap between different ones."""
-    ordered = np.sort(values)
+    ordered = values.copy()
+    sort_values(ordered)
     n = ordered.size
     ties = 0
     gap = np.inf

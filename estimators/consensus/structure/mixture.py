@@ -14,8 +14,9 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from estimators.arrays import FloatArray
-from estimators.consensus.structure.decay import decay
 from estimators.kernels import device
 
 # Slots of a candidate's parameter vector.
@@ -38,10 +39,10 @@ HELD_COUNT = 15  # effective number of readings that keep the level of an excurs
 CORRELATION = 16  # of successive residuals of readings that follow the line
 SIZE = 17
 
-_ROOT_2PI = 2.5066282746310002
+ROOT_2PI = 2.5066282746310002
 _ROOT_2PI_E = 4.132731354122493  # root of 2 pi e: a normal law's entropy is its logarithm
 _HELD_WIDTH = 4.0  # width of an excursion's level in the hard labels' likelihood, in their scale
-_STUDENT5 = 0.3796066898224944  # density of Student's t with 5 degrees of freedom at 0
+STUDENT5 = 0.3796066898224944  # density of Student's t with 5 degrees of freedom at 0
 
 LEVEL_GAIN = 0.03
 """Least gain with which the level of an excursion is followed: slow, so that it means something."""
@@ -82,33 +83,36 @@ def start(
     fixed: float,
     params: FloatArray,
 ) -> None:
-    """Set the parameters of a candidate from labels cut at ``scale``: one pass without transcendentals.
+    """Set the parameters of a candidate from labels cut at ``scale``, without transcendentals.
 
     The likelihood is that of the hard labels, good enough to tell which candidates deserve a better one.
     """
     n = t.size
-    inside = 0.0
-    square = 0.0
-    outside_twice = 0.0
-    held = 0.0
-    was_out = 0.0
-    last = 0.0
+    residual = np.empty(n)
     # Flags are numbers here: branches that follow random outliers cost more than the arithmetic.
+    out = np.empty(n, np.int64)
     for i in range(n):
         r = (y[i] - level - slope * t[i]) * root_weight[i]
-        out = 1.0 if abs(r) > scale else 0.0
-        square += (1.0 - out) * r * r
-        inside += 1.0 - out
-        both = out * was_out
-        outside_twice += both
-        held += both if abs(r - last) <= 2.0 * scale else 0.0
-        was_out = out
-        last = r
-    outside = n - inside
-    first_out = 1.0 if abs(y[0] - level - slope * t[0]) * root_weight[0] > scale else 0.0
+        residual[i] = r
+        out[i] = 1 if abs(r) > scale else 0
+    outside = 0
+    for i in range(n):
+        outside += out[i]
+    twice = 0
+    kept = 0
+    for i in range(1, n):
+        both = out[i] & out[i - 1]
+        twice += both
+        kept += both if abs(residual[i] - residual[i - 1]) <= 2.0 * scale else 0
+    square = 0.0
+    for i in range(n):
+        square += (1.0 - out[i]) * residual[i] * residual[i]
+    inside = float(n - outside)
+    outside_twice = float(twice)
+    held = float(kept)
     # Of n - 1 pairs of neighbours: how often an outlier was entered and how often it went on.
-    from_out = outside - was_out
-    entered = outside - first_out - outside_twice
+    from_out = float(outside - out[n - 1])
+    entered = float(outside - out[0]) - outside_twice
     sigma = fixed if fixed > 0.0 else max(sigma_floor, math.sqrt(square / max(1.0, inside - 2.0)))
     params[LEVEL] = level
     params[SLOPE] = slope
@@ -139,207 +143,3 @@ def side_scale(mean: float, s: float) -> float:
     c = SEPARATION * s
     half = 0.5 * (mean - 2.0 * c)
     return max(SIDE_FLOOR * s, half + math.sqrt(half * half + mean * c))
-
-
-@device
-def em_step(
-    t: FloatArray,
-    y: FloatArray,
-    root_weight: FloatArray,
-    sides: int,
-    sigma_floor: float,
-    fixed: float,
-    correlate: bool,
-    params: FloatArray,
-) -> None:
-    """One forward filter over the series and one update of all parameters, in place.
-
-    ``sides``: 0 none, 1 above only, -1 below only, 2 both. ``fixed``: a given noise scale, or 0.
-    ``correlate``: whether to estimate the correlation of neighbours.
-    """
-    n = t.size
-    a = params[LEVEL]
-    b = params[SLOPE]
-    s = params[SIGMA]
-    held_share = params[HELD]
-    tau = params[HELD_SCALE]
-    enter = params[ENTER]
-    stay = params[STAY]
-    uniform = params[UNIFORM]  # over the unit range of the values
-    above = params[ABOVE]
-    below = params[BELOW]
-    theta_up = params[ABOVE_MEAN]
-    theta_down = params[BELOW_MEAN]
-    narrow = 1.0 / (_ROOT_2PI * s)
-    apart = SEPARATION * s
-    above_height = above * (apart + theta_up) / (theta_up * theta_up)
-    below_height = below * (apart + theta_down) / (theta_down * theta_down)
-    above_rate = 1.0 / theta_up
-    below_rate = 1.0 / theta_down
-    inverse_apart = 1.0 / apart
-    inverse_s = 1.0 / s
-    inverse_tau = 1.0 / tau
-    held_height = _STUDENT5 / tau
-    log_likelihood = 0.0
-    product = 1.0
-    # Sufficient statistics of the M-step.
-    w0 = 0.0
-    w1 = 0.0
-    w2 = 0.0
-    wy = 0.0
-    wty = 0.0
-    wyy = 0.0
-    inliers = 0.0
-    q_uniform = 0.0
-    q_above = 0.0
-    q_side = 0.0
-    r_above = 0.0
-    r_side = 0.0
-    q_held = 0.0
-    q_fresh = 0.0
-    r_held = 0.0
-    in_to_out = 0.0
-    from_out = 1e-9
-    out_to_out = 0.0
-    rho = params[CORRELATION]
-    lagged = 0.0
-    lag_square = 0.0
-    expected = 0.0  # of the residual, given the last one that followed the line
-    known = 0.0  # share of its variance that is known
-    last_at = -2
-    last_inlier = 0.0
-    previous = enter / (1.0 - stay + enter)  # stationary share of contaminated readings
-    level = 0.0
-    age = 0.0
-    for i in range(n):
-        root = root_weight[i]
-        raw = y[i] - a - b * t[i]
-        r = raw * root
-        # Densities of whitened residuals times the root of the weight are densities of the values.
-        if rho > 0.0:
-            expected *= rho
-            known *= rho * rho
-            left = 1.0 / math.sqrt(1.0 - known)
-            u = (r - expected) * inverse_s * left
-            f_in = narrow * root * left * decay(0.5 * u * u)
-        else:
-            u = r * inverse_s
-            f_in = narrow * root * decay(0.5 * u * u)
-        # One-sided errors above or below, whichever side the reading is on.
-        is_above = 1.0 if r > 0.0 else 0.0
-        distance = abs(r)
-        height = below_height + is_above * (above_height - below_height)
-        rate = below_rate + is_above * (above_rate - below_rate)
-        g_side = height * root * decay(distance * rate) * (1.0 - decay(distance * inverse_apart))
-        f_free = uniform + g_side
-        f_held = 0.0
-        tail = 0.0
-        if age > 0.0:
-            away = (r - level) * inverse_tau
-            tail = 1.0 / (1.0 + 0.2 * away * away)
-            f_held = held_height * root * tail * tail * tail
-            f_out = (1.0 - held_share) * f_free + held_share * f_held
-        else:
-            f_out = f_free
-        p_out = previous * stay + (1.0 - previous) * enter
-        joint_out = p_out * f_out
-        # Positive, since neither density falls to 0.
-        total = (1.0 - p_out) * f_in + joint_out
-        product *= total
-        if product < 1e-200 or product > 1e200:
-            log_likelihood += math.log(product)
-            product = 1.0
-        inverse = 1.0 / total
-        out = joint_out * inverse
-        z = 1.0 - out
-        # Transitions: posterior of the pair, by the filter.
-        per_state = f_out * inverse
-        from_out += previous
-        out_to_out += previous * stay * per_state
-        in_to_out += (1.0 - previous) * enter * per_state
-        # The line.
-        w = z * root * root
-        w0 += w
-        w1 += w * t[i]
-        w2 += w * t[i] * t[i]
-        wy += w * y[i]
-        wty += w * t[i] * y[i]
-        wyy += w * raw * raw
-        inliers += z
-        # The background: the share out / f_out goes to each of its parts.
-        part = p_out * inverse
-        free = part
-        if age > 0.0:
-            held = part * held_share * f_held
-            free = part * (1.0 - held_share)
-            q_held += held
-            q_fresh += out - held
-            r_held += held * 1.2 * tail * (r - level) * (r - level)
-        q_uniform += free * uniform
-        sided = free * g_side
-        q_side += sided
-        r_side += sided * distance
-        sided *= is_above
-        q_above += sided
-        r_above += sided * distance
-        # The level of the present excursion, forgotten once the series is back on the line.
-        if out > 0.5:
-            if age > 0.0 and abs(r - level) < 6.0 * tau:
-                age += out
-                gain = max(LEVEL_GAIN, 1.0 / age)
-                level += gain * (r - level)
-            else:
-                level = r
-                age = 1.0
-        else:
-            age = 0.0
-            if last_at == i - 1:
-                lagged += r * last_inlier
-                lag_square += 0.5 * (r * r + last_inlier * last_inlier)
-            last_at = i
-            last_inlier = r
-            expected = r
-            known = 1.0
-        previous = out
-    log_likelihood += math.log(product)
-    params[LIKELIHOOD] = log_likelihood
-    params[INLIERS] = inliers
-    params[HELD_COUNT] = q_held
-    if inliers < 2.5:
-        params[LIKELIHOOD] = -1e300
-        return
-    mean_t = w1 / w0
-    sxx = w2 - w1 * mean_t
-    params[TIME_SPREAD] = sxx
-    if sxx > 1e-12 * w0:
-        slope = (wty - mean_t * wy) / sxx
-        line_level = wy / w0 - slope * mean_t
-        # Residual sum at the new line, from the old residuals: the step is small beside them.
-        da = line_level - a
-        db = slope - b
-        residual = wyy - (da * da * w0 + 2.0 * da * db * w1 + db * db * w2)
-        params[LEVEL] = line_level
-        params[SLOPE] = slope
-        if fixed <= 0.0:
-            params[SIGMA] = max(sigma_floor, math.sqrt(max(0.0, residual) / inliers))
-    if correlate and lag_square > 0.0:
-        rho = lagged / lag_square
-        params[CORRELATION] = min(rho, 0.97) if rho > CORRELATION_FLOOR / math.sqrt(inliers) else 0.0
-    s = params[SIGMA]
-    q_below = q_side - q_above
-    r_below = r_side - r_above
-    free_total = q_uniform + q_side + 1.0
-    if sides != 0:
-        params[ABOVE] = 0.0 if sides == -1 else (q_above + 0.25) / free_total
-        params[BELOW] = 0.0 if sides == 1 else (q_below + 0.25) / free_total
-        params[UNIFORM] = 1.0 - params[ABOVE] - params[BELOW]
-        params[ABOVE_MEAN] = side_scale(r_above / max(q_above, 1e-9), s)
-        params[BELOW_MEAN] = side_scale(r_below / max(q_below, 1e-9), s)
-    else:
-        params[UNIFORM] = 1.0
-        params[ABOVE] = 0.0
-        params[BELOW] = 0.0
-    params[HELD] = min(0.99, max(0.01, (q_held + 0.5) / (q_held + q_fresh + 1.0)))
-    params[HELD_SCALE] = max(TAU_FLOOR * s, math.sqrt(r_held / max(q_held, 1e-9)))
-    params[ENTER] = min(0.98, max(0.002, (in_to_out + 0.5) / (n - from_out + 1.0)))
-    params[STAY] = min(0.995, max(0.02, (out_to_out + 0.5) / (from_out + 1.0)))

@@ -33,17 +33,13 @@ def pick_lines(
     deviation of the times of the pick's inliers, not at the ends of the range: otherwise one burst fills
     the list with its tilts.
     """
-    n = t.size
     alive = np.empty(count, np.int64)
+    inside = np.empty(t.size, np.int64)
     for o in range(2, OCTAVES):
+        if made == picks.size:
+            break
         scale = 2.0**-o
-        living = 0
-        for h in range(count):
-            here = evidence[o, h]
-            finer = evidence[o + 1, h] if o + 1 < OCTAVES else 0.0
-            if here > least and here >= evidence[o - 1, h] and here > finer:
-                alive[living] = h
-                living += 1
+        living = _find_peaks(evidence, o, count, least, alive)
         for _ in range(per_octave):
             if living == 0 or made == picks.size:
                 break
@@ -51,17 +47,7 @@ def pick_lines(
             for k in range(1, living):
                 if evidence[o, alive[k]] > evidence[o, best]:
                     best = alive[k]
-            s0 = 0.0
-            s1 = 0.0
-            s2 = 0.0
-            for i in range(n):
-                r = y[i] - level[best] - slope[best] * t[i]
-                inside = 1.0 if abs(r) <= scale else 0.0
-                s0 += inside
-                s1 += inside * t[i]
-                s2 += inside * t[i] * t[i]
-            mean = s1 / s0
-            spread = np.sqrt(max(0.0, s2 / s0 - mean * mean))
+            mean, spread = _time_of_inliers(t, y, level[best], slope[best], scale, inside)
             reach = SAME_LINE * scale
             left = 0
             for k in range(living):
@@ -81,6 +67,45 @@ def pick_lines(
                 pick_octave[made] = o
                 made += 1
     return made
+
+
+@device
+def _find_peaks(evidence: FloatArray, o: int, count: int, least: float, peaks: IntArray) -> int:
+    """List the lines whose evidence peaks at octave ``o``; returns how many."""
+    here, coarser = evidence[o], evidence[o - 1]
+    # Most octaves hold no evidence at all; that is told without a branch per line.
+    enough = 0
+    for h in range(count):
+        enough += 1 if here[h] > least else 0
+    if enough == 0:
+        return 0
+    finest = o + 1 == OCTAVES
+    finer = here if finest else evidence[o + 1]
+    found = 0
+    for h in range(count):
+        peaks[found] = h
+        beyond = 0.0 if finest else finer[h]
+        found += 1 if (here[h] > least) & (here[h] >= coarser[h]) & (here[h] > beyond) else 0
+    return found
+
+
+@device
+def _time_of_inliers(
+    t: FloatArray, y: FloatArray, level: float, slope: float, scale: float, inside: IntArray
+) -> tuple[float, float]:
+    """Mean and deviation of the times of the points within ``scale`` of a line; ``inside`` is room."""
+    count = 0
+    for i in range(t.size):
+        inside[count] = i
+        count += 1 if abs(y[i] - level - slope * t[i]) <= scale else 0
+    s1 = 0.0
+    s2 = 0.0
+    for k in range(count):
+        x = t[inside[k]]
+        s1 += x
+        s2 += x * x
+    mean = s1 / count
+    return mean, np.sqrt(max(0.0, s2 / count - mean * mean))
 
 
 @device

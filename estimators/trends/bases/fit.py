@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Mapping
 
@@ -10,24 +11,26 @@ import numpy as np
 from estimators.arrays import FloatArray, InputError
 from estimators.consensus.bases.likelihood import noise_evidence, value_range
 from estimators.consensus.found import Found, LinearData, LineData, Scale
-from estimators.inference.columns import ColumnUncertainty, column_uncertainty
+from estimators.inference.columns import ColumnUncertainty
 from estimators.inference.intervals import two_sided_p
 from estimators.inference.probability import inlier_probability
 from estimators.noise.resolution import Quantisation, find_quantisation
-from estimators.regression.influence import INLIERS, influence_sums
+from estimators.regression.influence import INLIERS
 from estimators.regression.least_squares import least_squares
-from estimators.result import Consensus, Estimate, NoFit, NoFitReason, Uncertainty
+from estimators.result import Consensus, Estimate, NoFit, NoFitReason
 from estimators.trends.bases.curve import BasisCurve
 from estimators.trends.bases.design import Design, OwnColumn, frame_of
 from estimators.trends.bases.harmonics import first_seasons, more_harmonics, sharpest
 from estimators.trends.bases.parameters import parameters_of, polynomial_directions
 from estimators.trends.bases.periods import find_periods
 from estimators.trends.bases.settings import periods_of
+from estimators.trends.bases.uncertainty import FittedColumns, check_uncertainty, infer_columns
 from estimators.trends.labels import label_rows
 from estimators.trends.line.fit import fit_line, origin_of, settle_scale
 from estimators.trends.observations import Evidence, collect_notices
 from estimators.trends.quality import fit_quality
 from estimators.trends.request import Request, no_fit
+from estimators.trends.resampling import Inferred
 from estimators.trends.runner_up import LEAST_MARGIN, LEAST_SUPPORT, NOTABLE_SHARE, RIVAL_SHARE
 from estimators.trends.trend import RunnerUp, Trend
 
@@ -53,10 +56,7 @@ def fit_linear(request: Request) -> Trend | NoFit:
 
 def _fit(request: Request, model: str, degree: int) -> Trend | NoFit:
     series = request.series
-    if request.uncertainty != "effective-n":
-        raise InputError(
-            "uncertainty", f"the model {model} offers effective-n only here; the line offers all"
-        )
+    check_uncertainty(request, model, degree)
     if degree > 0 and series.t[0] == series.t[-1]:
         message = "All times are equal; a trend needs two different times."
         return no_fit(NoFitReason.constant_time, message, series)
@@ -80,7 +80,16 @@ def _fit(request: Request, model: str, degree: int) -> Trend | NoFit:
         refitted = _search(supported, request, own, quantisation)
         if not isinstance(refitted, NoFit):
             design, fitted = supported, refitted
-    return _answer(design, request, model, quantisation, *fitted)
+
+    def again(values: FloatArray) -> FittedColumns | None:
+        asked = dataclasses.replace(request, series=dataclasses.replace(request.series, y=values))
+        refitted = _search(design, asked, own, quantisation)
+        return None if isinstance(refitted, NoFit) else FittedColumns.of(refitted[0], refitted[2])
+
+    data, scale, found = fitted
+    columns = FittedColumns.of(data, found)
+    inferred = infer_columns(request, design, columns, again)
+    return _answer(design, request, model, quantisation, scale, columns, inferred)
 
 
 def _own_columns(request: Request) -> dict[str, FloatArray]:
@@ -154,7 +163,7 @@ def _longer(
 ) -> Design:
     """Design with as many harmonics as the inliers support."""
     data, _, found = fitted
-    spread, _ = _infer(data, found, request)
+    spread = FittedColumns.of(data, found).spread(correct=request.options.correct_serial_correlation)
     if spread is None or own:
         return design
     precision = np.ones(data.n) if data.weights is None else data.weights
@@ -176,7 +185,7 @@ def _supported(design: Design, request: Request, fitted: tuple[LinearData, Scale
     if not any(season.chosen for season in design.seasons):
         return design
     data, _, found = fitted
-    spread, _ = _infer(data, found, request)
+    spread = FittedColumns.of(data, found).spread(correct=request.options.correct_serial_correlation)
     if spread is None:
         return design
     kept = []
@@ -190,27 +199,17 @@ def _supported(design: Design, request: Request, fitted: tuple[LinearData, Scale
     return design.with_seasons(tuple(kept))
 
 
-def _infer(data: LinearData, found: Found, request: Request) -> tuple[ColumnUncertainty | None, FloatArray]:
-    root = None if data.weights is None else np.sqrt(data.weights)
-    sums = found.sums
-    if sums is None:
-        sums = influence_sums(data.t, data.y, found.residual, root, found.sigma, found.threshold, found.loss)
-    correct = request.options.correct_serial_correlation
-    spread = column_uncertainty(data.columns, found, root, sums, correct_serial_correlation=correct)
-    return spread, sums
-
-
 def _answer(
     design: Design,
     request: Request,
     model: str,
     quantisation: Quantisation,
-    data: LinearData,
     scale: Scale,
-    found: Found,
+    fit: FittedColumns,
+    inferred: Inferred[ColumnUncertainty],
 ) -> Trend:
     series, preset = request.series, request.preset
-    spread, sums = _infer(data, found, request)
+    found, sums, spread = fit.found, fit.sums, inferred.spread
     origin, intercept_at = origin_of(series)
     constant = "level" if model == "constant" else "intercept"
     parameters = parameters_of(design, found.theta, spread, intercept_at, constant, request.level)
@@ -241,8 +240,8 @@ def _answer(
             search=found.search,
             seed=request.seed,
         ),
-        uncertainty=_describe(spread, request.level),
-        p_value=_p_value(parameters.get("slope"), spread),
+        uncertainty=inferred.describe(request.level),
+        p_value=_p_value(parameters.get("slope"), spread) if inferred.p_value is None else inferred.p_value,
         r2=r2,
         rmse=rmse,
         runner_up=runner_up,
@@ -286,9 +285,3 @@ def _p_value(slope: Estimate | None, spread: ColumnUncertainty | None) -> float 
     if slope.stderr == 0.0:
         return two_sided_p(math.copysign(math.inf, slope.value) if slope.value else 0.0, spread.dof)
     return two_sided_p(slope.value / slope.stderr, spread.dof)
-
-
-def _describe(spread: ColumnUncertainty | None, level: float) -> Uncertainty:
-    if spread is None:
-        return Uncertainty("none", level, None, None, None)
-    return Uncertainty(spread.method, level, spread.effective_n, spread.lag1, spread.dof)

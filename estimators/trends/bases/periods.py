@@ -28,8 +28,9 @@ from estimators.trends.bases.harmonics import FIRST, coefficients_allowed, harmo
 from estimators.trends.bases.settings import CALENDAR
 
 MOST_FOUND = 3
-LEAST_CYCLES = 3.0
-"""Cycles in the series from which a period that is none of the calendar's can be found."""
+LEAST_CYCLES = 4.0
+"""Cycles in the series from which a period that is none of the calendar's can be found: fewer are as easily
+wandering noise."""
 LEAST_CALENDAR_CYCLES = 2.0
 
 _CALENDAR = tuple(CALENDAR[name] for name in ("year", "week", "day"))
@@ -38,8 +39,9 @@ _MOST_POINTS = 4000
 _MOST_FREQUENCIES = 20000
 _CHANCE = 1e-3
 """Chance of a period in noise."""
-_DRAWN_IN, _LEFT_OUT = 2.5, 4.0
-"""Noise scales to which residuals are drawn in, and beyond which they are left out."""
+_DRAWN_IN, _LEFT_OUT = 1.0, 2.5
+"""Noise scales to which residuals are drawn in, and beyond which they are left out: tightly, since a season
+not yet fitted is part of the scale (``benchmarks.shapes``)."""
 _NEIGHBOURHOOD = 1.6
 """Ratio of frequencies around a peak that its background is taken from."""
 _LEAST_NEIGHBOURS = 8.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime as dt
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -25,6 +26,9 @@ CALENDAR: Mapping[str, float] = MappingProxyType(
     {"hour": 3600.0, "day": 86400.0, "week": 604800.0, "month": 365.25 * 7200.0, "year": 365.25 * 86400.0}
 )
 """Periods by name, in seconds; the year is the Julian one of 365.25 days, the month a twelfth of it."""
+
+_PARAMETER = re.compile(r"slope|slope_end|intercept|level|power_\d+|season_\d+_(amplitude|peak)")
+"""What the trend's own parameters are called."""
 
 Period = float | str | np.timedelta64 | dt.timedelta
 
@@ -203,6 +207,10 @@ def named_columns(columns: Any) -> Mapping[str, ArrayLike]:
 
 
 def _check_column(name: str, column: ArrayLike) -> FloatArray:
+    if _PARAMETER.fullmatch(name):
+        raise InputError(
+            "columns", f"{name} is the name of a parameter of the trend; call the column otherwise"
+        )
     vector = as_vector(plain_column(column), "columns")
     if np.any(np.isfinite(vector) & (np.abs(vector) > LARGEST_TIME)):
         raise InputError("columns", f"{name}: a value is beyond ±{LARGEST_TIME:g}; use a larger unit")

@@ -10,6 +10,8 @@ from estimators.arrays import BoolArray, FloatArray, IntArray
 from estimators.result import NoFit, Points
 from estimators.trends.batch.source import Source
 from estimators.trends.models import MODELS
+from estimators.trends.questions.crossing import Crossing
+from estimators.trends.regimes.regime import Regime
 from estimators.trends.table import Estimates, TrendTable
 from estimators.trends.trend import Trend
 
@@ -51,6 +53,10 @@ class Columns:
         self.parameters: dict[str, Estimates] = {}
         for name in MODELS[source.settings.model].parameters:
             self.estimates(name)
+        self.models = [source.settings.model] * series
+        self.noise = [""] * series
+        self.regimes: list[tuple[Regime, ...]] = [()] * series
+        self.crossings: list[tuple[Crossing, ...]] = [()] * series
         self.reason = [""] * series
         self.message = [""] * series
         self.notices: list[tuple[str, ...]] = [()] * series
@@ -79,6 +85,9 @@ class Columns:
             self.reason[k], self.message[k] = answer.reason.value, answer.message
             return
         self.fitted[k] = True
+        self.models[k] = answer.model
+        self.noise[k] = "" if answer.noise is None else answer.noise.domain
+        self.regimes[k], self.crossings[k] = answer.regimes, answer.crossings
         self.origin[k] = answer.origin
         for name, estimate in answer.parameters.items():
             columns = self.estimates(name)
@@ -125,6 +134,12 @@ class Columns:
             fitted=self.fitted,
             reason=tuple(self.reason),
             message=tuple(self.message),
+            models=tuple(
+                model if fitted else "" for model, fitted in zip(self.models, self.fitted, strict=True)
+            ),
+            noise=tuple(self.noise),
+            regimes=tuple(self.regimes),
+            crossings=tuple(self.crossings),
             origin=self.origin,
             parameters=met or self.parameters,
             n=self.n,

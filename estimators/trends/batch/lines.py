@@ -128,7 +128,8 @@ def find_structures(
 
 def _pair_probability(inliers: FloatArray, n: IntArray, drawn: FloatArray) -> FloatArray:
     """Chance that a clean pair was drawn, as the structure search of one series tells it."""
-    with np.errstate(invalid="ignore"):
+    # What stands where no line was found may be anything.
+    with np.errstate(invalid="ignore", over="ignore"):
         clean = np.where(inliers < 2, 0.0, 1.0 * (inliers / n) * ((inliers - 1) / (n - 1)))
         return -np.expm1(drawn * np.log1p(-np.minimum(clean, 1.0 - 1e-16)))
 

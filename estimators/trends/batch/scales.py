@@ -12,6 +12,7 @@ import numpy as np
 from numba import types
 
 from estimators.arrays import LARGEST_VALUE, BoolArray, FloatArray, IntArray
+from estimators.consensus.structure.ranking import sort_values
 from estimators.inference.chance import central_range
 from estimators.kernels import kernel, ro
 from estimators.noise.resolution import TIED_SHARE, find_quantisation, scale_floor
@@ -95,7 +96,7 @@ def fill_scales(
         for i in range(size):
             room[i] = y[a + (i if n <= _SAMPLE else i * n // _SAMPLE)]
         ordered = room[:size]
-        ordered.sort()
+        sort_values(ordered)
         ties = 0
         for i in range(1, size):
             ties += ordered[i] == ordered[i - 1]

@@ -106,9 +106,10 @@ class Source:
         t, y, weights = self.columns(k)
         try:
             as_series(t, y, weights)
+            # The settings were checked; what is refused now is refused for what this series holds.
+            return self.settings.fit(t, y, weights)
         except InputError as error:
             return _unusable(str(error), t, y)
-        return self.settings.fit(t, y, weights)
 
 
 def _unusable(message: str, t: np.ndarray[Any, Any], y: FloatArray) -> NoFit:

@@ -15,7 +15,7 @@ from estimators.trends.exponential.curve import ExponentialCurve
 from estimators.trends.exponential.derived import derived_estimates, is_open
 from estimators.trends.exponential.domain import Noise
 from estimators.trends.exponential.multiplicative import fit_multiplicative
-from estimators.trends.exponential.native import fit_native
+from estimators.trends.exponential.native import fit_native, start_curves
 from estimators.trends.exponential.selection import (
     UNDETERMINED,
     additive_evidence,
@@ -65,14 +65,20 @@ def fit_exponential(request: Request) -> Trend | NoFit:
     if refused is not None:
         return refused
     logs_only = not isinstance(request.preset.search, StructureSearch)
+    if request.uncertainty != "effective-n" and request.noise == "auto" and not logs_only:
+        # Which noise it is, the plain fits tell; how sure the answer is, is then asked in that domain.
+        told = fit_exponential(dataclasses.replace(request, uncertainty="effective-n"))
+        return told if isinstance(told, NoFit) else _inferred(request, told)
     relative = None if request.noise == "additive" else _multiplicative(request)
     if relative is not None and (request.noise == "multiplicative" or logs_only):
         if isinstance(relative, NoFit):
             return relative
         given = request.noise == "multiplicative"
         return _finish(relative, Noise("multiplicative", "given" if given else "method"))
-    start = relative if relative is not None else _multiplicative(_for_the_start(request))
-    curves = () if isinstance(start, NoFit) else (_curve(start),)
+    if relative is None:
+        curves = start_curves(request)
+    else:
+        curves = () if isinstance(relative, NoFit) else (_curve(relative),)
     absolute = fit_native(request, curves)
     if request.noise == "additive":
         return absolute if isinstance(absolute, NoFit) else _finish(absolute, Noise("additive", "given"))
@@ -97,16 +103,6 @@ def _check(request: Request) -> None:
                     "say what noise it belongs to: noise='additive' (in units of the values) or "
                     "noise='multiplicative' (of ln(value))",
                 )
-    if (
-        request.uncertainty in ("bootstrap", "permutation")
-        and structure
-        and request.noise != "multiplicative"
-    ):
-        raise InputError(
-            "uncertainty",
-            f"{request.uncertainty} fits exponentials through their logarithms only; use effective-n or hac, "
-            "or noise='multiplicative'",
-        )
 
 
 def _refuse(series: Series) -> NoFit | None:
@@ -126,9 +122,16 @@ def _refuse(series: Series) -> NoFit | None:
     return no_fit(reason, message, series)
 
 
-def _for_the_start(request: Request) -> Request:
-    """Fit of the logarithms that only says where to look: no scale of the values applies to it."""
-    return dataclasses.replace(request, threshold=None, sigma=None, uncertainty="effective-n")
+def _inferred(request: Request, told: Trend) -> Trend:
+    """Answer, and its alternative, with the uncertainty that was asked for."""
+    again = fit_exponential(dataclasses.replace(request, noise=_curve(told).noise))
+    if isinstance(again, NoFit):
+        return told
+    alternative = None if told.alternative is None else _inferred(request, told.alternative)
+    about_noise = [item for item in told.notices if item.code is NoticeCode.undetermined_noise]
+    return dataclasses.replace(
+        again, noise=told.noise, alternative=alternative, notices=(*again.notices, *about_noise)
+    )
 
 
 def _multiplicative(request: Request) -> Trend | NoFit:

@@ -11,12 +11,14 @@ from estimators.arrays import LARGEST_VALUE, FloatArray
 from estimators.consensus.found import OtherStructure, Scale
 from estimators.inference.intervals import two_sided_p
 from estimators.inference.probability import inlier_probability
-from estimators.inference.sandwich import LineUncertainty, line_uncertainty
-from estimators.noise.resolution import find_quantisation, scale_floor
+from estimators.inference.sandwich import LineUncertainty
+from estimators.noise.resolution import Quantisation, find_quantisation, scale_floor
 from estimators.regression.influence import SUPPORT, influence_sums
-from estimators.result import Consensus, NoFit, NoFitReason, Uncertainty
+from estimators.result import Consensus, NoFit, NoFitReason
 from estimators.trends.exponential.additive import AdditiveFit, find_additive
 from estimators.trends.exponential.curve import ExponentialCurve
+from estimators.trends.exponential.multiplicative import fit_multiplicative
+from estimators.trends.exponential.uncertainty import NativeFit, infer_native
 from estimators.trends.labels import label_rows
 from estimators.trends.line.fit import LEAST_FLOOR
 from estimators.trends.line.frame import Frame
@@ -24,7 +26,6 @@ from estimators.trends.magnitude import in_value_units, value_unit
 from estimators.trends.observations import Evidence, collect_notices
 from estimators.trends.quality import fit_quality
 from estimators.trends.request import Request, no_fit
-from estimators.trends.resampling import LineFit, infer_line
 from estimators.trends.runner_up import LEAST_MARGIN, LEAST_SUPPORT, NOTABLE_SHARE, RIVAL_SHARE
 from estimators.trends.trend import RunnerUp, Trend
 
@@ -54,47 +55,27 @@ def fit_native(request: Request, curves: tuple[ExponentialCurve, ...]) -> Trend 
 
 
 def _fit(request: Request, curves: tuple[ExponentialCurve, ...]) -> Trend | NoFit:
-    series, options = request.series, request.options
+    series = request.series
     frame = Frame.of(series.t)
-    t = frame.apply(series.t)
     quantisation = find_quantisation(series.y, series.t)
-    floor = max(scale_floor(series.y, quantisation), LEAST_FLOOR)
-    if request.sigma is not None:
-        floor = min(floor, request.sigma)
-    scale = Scale(request.sigma, "given", request.threshold, "given", floor)
-    seeds = np.array([_in_frame(curve, frame) for curve in curves]).reshape(-1, 2)
-    largest = max((_largest(curve, request) for curve in curves), default=0.0)
+    native = _find(request, curves, frame, quantisation)
+    if isinstance(native, NoFit):
+        return native
+
+    def again(values: FloatArray) -> NativeFit | None:
+        asked = dataclasses.replace(request, series=dataclasses.replace(series, y=values))
+        replicate = _find(asked, start_curves(asked), frame, quantisation)
+        return None if isinstance(replicate, NoFit) else replicate
+
+    fit, residual, t = native.fit, native.residual, native.t
+    found, unit = fit.found, fit.unit
     own_root = None if series.weights is None else np.sqrt(series.weights)
-    fit = find_additive(t, series.y, series.weights, scale, options, seeds, largest)
-    if isinstance(fit, NoFit):
-        return no_fit(fit.reason, fit.message, series)
-    if fit is None:
-        message = "No exponential stands out: no two of the values, of one sign, have others follow them."
-        return no_fit(NoFitReason.no_consensus, message, series)
-    found, unit, root = fit.found, fit.unit, np.sqrt(np.asarray(fit.data.weights))
-    sums = influence_sums(
-        fit.data.t, fit.data.y, found.residual, root, found.sigma, found.threshold, found.loss
-    )
-    residual = series.y - _values(fit, t)
     sigma, threshold = found.sigma * unit, found.threshold * unit
-    native = influence_sums(t, series.y, residual, own_root, sigma, threshold, found.loss)
-    # The line's precisions are a matter of geometry: by their own, all readings are worth the same.
-    sums[SUPPORT] = native[SUPPORT]
-    r2, rmse = fit_quality(native)
-
-    def spread_of(*, correct: bool) -> LineUncertainty | None:
-        return line_uncertainty(sums, series.n, found.sigma, found.spread, correct_serial_correlation=correct)
-
-    line = LineFit(
-        data=fit.data,
-        found=found,
-        root=root,
-        spread=spread_of(correct=options.correct_serial_correlation),
-        independent=lambda: spread_of(correct=False),
-        refit=lambda _: None,
-    )
-    spread = infer_line(line, request.uncertainty, request.level, options.resamples, request.seed).spread
-    curve = _curve_of(fit, frame, spread, (float(series.t[0]), float(series.t[-1])))
+    floor = _floor(request, quantisation)
+    r2, rmse = fit_quality(influence_sums(t, series.y, residual, own_root, sigma, threshold, found.loss))
+    inferred = infer_native(request, native, again)
+    spread = inferred.spread
+    curve = _curve_of(native, frame, spread, (float(series.t[0]), float(series.t[-1])))
     off = np.abs(residual) if own_root is None else np.abs(residual) * own_root
     inlier = off <= threshold
     inliers = int(np.count_nonzero(inlier))
@@ -122,8 +103,8 @@ def _fit(request: Request, curves: tuple[ExponentialCurve, ...]) -> Trend | NoFi
             search=own.search,
             seed=request.seed,
         ),
-        uncertainty=_describe(spread, request.level),
-        p_value=two_sided_p(_statistic(curve), dof),
+        uncertainty=inferred.describe(request.level),
+        p_value=two_sided_p(_statistic(curve), dof) if inferred.p_value is None else inferred.p_value,
         r2=r2,
         rmse=rmse,
         runner_up=other,
@@ -133,6 +114,45 @@ def _fit(request: Request, curves: tuple[ExponentialCurve, ...]) -> Trend | NoFi
         time=series.input_time,
         values=series.input_values,
     )
+
+
+def start_curves(request: Request) -> tuple[ExponentialCurve, ...]:
+    """Find where to look first: the line through the logarithms, to which no scale of the values applies."""
+    plain = dataclasses.replace(request, threshold=None, sigma=None, uncertainty="effective-n")
+    found = fit_multiplicative(plain)
+    return () if isinstance(found, NoFit) else (found[1],)
+
+
+def _floor(request: Request, quantisation: Quantisation) -> float:
+    floor = max(scale_floor(request.series.y, quantisation), LEAST_FLOOR)
+    return floor if request.sigma is None else min(floor, request.sigma)
+
+
+def _find(
+    request: Request, curves: tuple[ExponentialCurve, ...], frame: Frame, quantisation: Quantisation
+) -> NativeFit | NoFit:
+    """Search, and what its uncertainty is made from."""
+    series = request.series
+    t = frame.apply(series.t)
+    scale = Scale(request.sigma, "given", request.threshold, "given", _floor(request, quantisation))
+    seeds = np.array([_in_frame(curve, frame) for curve in curves]).reshape(-1, 2)
+    largest = max((_largest(curve, request) for curve in curves), default=0.0)
+    fit = find_additive(t, series.y, series.weights, scale, request.options, seeds, largest)
+    if isinstance(fit, NoFit):
+        return no_fit(fit.reason, fit.message, series)
+    if fit is None:
+        message = "No exponential stands out: no two of the values, of one sign, have others follow them."
+        return no_fit(NoFitReason.no_consensus, message, series)
+    found, root = fit.found, np.sqrt(np.asarray(fit.data.weights))
+    sums = influence_sums(
+        fit.data.t, fit.data.y, found.residual, root, found.sigma, found.threshold, found.loss
+    )
+    residual = series.y - _values(fit, t)
+    own_root = None if series.weights is None else np.sqrt(series.weights)
+    sigma, threshold = found.sigma * fit.unit, found.threshold * fit.unit
+    # The line's precisions are a matter of geometry: by their own, all readings are worth the same.
+    sums[SUPPORT] = influence_sums(t, series.y, residual, own_root, sigma, threshold, found.loss)[SUPPORT]
+    return NativeFit(fit, t, residual, sums)
 
 
 def _in_frame(curve: ExponentialCurve, frame: Frame) -> tuple[float, float]:
@@ -155,21 +175,20 @@ def _values(fit: AdditiveFit, t: FloatArray) -> FloatArray:
 
 
 def _curve_of(
-    fit: AdditiveFit, frame: Frame, spread: LineUncertainty | None, span: tuple[float, float]
+    native: NativeFit, frame: Frame, spread: LineUncertainty | None, span: tuple[float, float]
 ) -> ExponentialCurve:
+    fit = native.fit
     amplitude = float(fit.found.theta[0])
-    center = 0.0 if spread is None else spread.center
+    center = fit.anchor if spread is None else spread.center
     nothing = math.nan
     return ExponentialCurve(
         noise="additive",
         sign=math.copysign(1.0, amplitude),
-        center=frame.middle + frame.half * (fit.anchor + center),
-        log_level=math.log(abs(amplitude) * fit.unit) + fit.rate * center,
+        center=frame.middle + frame.half * center,
+        log_level=math.log(abs(amplitude) * fit.unit) + fit.rate * (center - fit.anchor),
         rate=fit.rate / frame.half,
-        level_stderr=nothing if spread is None else math.sqrt(spread.level_variance) / abs(amplitude),
-        rate_stderr=nothing
-        if spread is None
-        else math.sqrt(spread.slope_variance) / abs(amplitude) / frame.half,
+        level_stderr=nothing if spread is None else math.sqrt(spread.level_variance),
+        rate_stderr=nothing if spread is None else math.sqrt(spread.slope_variance) / frame.half,
         sigma=fit.found.sigma * fit.unit,
         span=span,
     )
@@ -197,9 +216,3 @@ def _statistic(curve: ExponentialCurve) -> float:
     if curve.rate_stderr == 0.0:
         return math.copysign(math.inf, curve.rate) if curve.rate else 0.0
     return curve.rate / curve.rate_stderr
-
-
-def _describe(spread: LineUncertainty | None, level: float) -> Uncertainty:
-    if spread is None:
-        return Uncertainty("none", level, None, None, None)
-    return Uncertainty(spread.method, level, spread.effective_n, spread.lag1, spread.dof)

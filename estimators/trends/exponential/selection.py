@@ -12,7 +12,8 @@ import numpy as np
 from numba import types
 
 from estimators.arrays import FloatArray
-from estimators.consensus.structure.mixture import LEVEL, LIKELIHOOD, SIZE, SLOPE, em_step, start
+from estimators.consensus.structure.em import em_step
+from estimators.consensus.structure.mixture import LEVEL, LIKELIHOOD, SIZE, SLOPE, start
 from estimators.kernels import kernel, ro
 
 UNDETERMINED = 3.0

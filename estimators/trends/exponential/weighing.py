@@ -12,6 +12,7 @@ import numpy as np
 
 from estimators.arrays import FloatArray
 from estimators.consensus.structure.criterion import CORRELATION_PRICE, IMPOSSIBLE, criterion
+from estimators.consensus.structure.em import em_step
 from estimators.consensus.structure.finish import TABLE, fill_tables, newton_step, newton_sums
 from estimators.consensus.structure.mixture import (
     ABOVE,
@@ -27,7 +28,6 @@ from estimators.consensus.structure.mixture import (
     SLOPE,
     STAY,
     UNIFORM,
-    em_step,
 )
 from estimators.kernels import device
 from estimators.trends.exponential.proposals import STEEPEST, bounded_exp, fill_residuals

@@ -14,22 +14,25 @@ from estimators.inference.chance import chance_of_line
 from estimators.inference.intervals import two_sided_p
 from estimators.inference.probability import inlier_probability
 from estimators.inference.sandwich import LineUncertainty, line_uncertainty
+from estimators.inference.scores import point_scores
 from estimators.noise.resolution import Quantisation, find_quantisation, scale_floor
 from estimators.options import RobustOptions
 from estimators.regression.influence import INLIERS, influence_sums
-from estimators.result import Consensus, NoFit, NoFitReason, Uncertainty
+from estimators.result import Consensus, NoFit, NoFitReason
 from estimators.series import Series
 from estimators.trends.labels import label_rows
 from estimators.trends.line.frame import Frame, line_geometry, line_parameters
 from estimators.trends.observations import Evidence, collect_notices
 from estimators.trends.quality import fit_quality
 from estimators.trends.request import Request, no_fit
-from estimators.trends.resampling import Inferred, LineFit, Refit, infer_line
+from estimators.trends.resampling import Fitted, Inferred, Refit, Scored, infer
 from estimators.trends.runner_up import find_runner_up
 from estimators.trends.trend import Trend
 
 LEAST_FLOOR = float(np.finfo(np.float64).eps) / LARGEST_VALUE
 """Resolution of the smallest values that are fitted as they are; reached where all values are 0."""
+
+_ENDS = np.array([[1.0, -1.0], [1.0, 1.0]])
 
 
 def fit_line(request: Request) -> Trend | NoFit:
@@ -60,15 +63,7 @@ def fit_line(request: Request) -> Trend | NoFit:
     sums = found.sums
     if sums is None:
         sums = influence_sums(data.t, data.y, found.residual, root, found.sigma, found.threshold, found.loss)
-    line = LineFit(
-        data=data,
-        found=found,
-        root=root,
-        spread=_spread_of(found, sums, series.n, correct=options.correct_serial_correlation),
-        independent=lambda: _spread_of(found, sums, series.n, correct=False),
-        refit=lambda values: _refit(request, data, values, quantisation),
-    )
-    inferred = infer_line(line, request.uncertainty, request.level, options.resamples, seed)
+    inferred = _infer(request, data, found, sums, quantisation)
     spread = inferred.spread
     geometry = line_geometry(found.theta, frame, spread, found.sigma, series)
     dof = None if spread is None else spread.dof
@@ -105,7 +100,7 @@ def fit_line(request: Request) -> Trend | NoFit:
             search=found.search,
             seed=seed,
         ),
-        uncertainty=_describe(inferred, request.level),
+        uncertainty=inferred.describe(request.level),
         p_value=p_value,
         r2=r2,
         rmse=rmse,
@@ -185,11 +180,47 @@ def _statistic(slope: float, stderr: float) -> float:
     return slope / stderr
 
 
+def _infer(
+    request: Request, data: LineData, found: Found, sums: FloatArray, quantisation: Quantisation
+) -> Inferred[LineUncertainty]:
+    """Uncertainty by the method asked for."""
+    options = request.options
+    spread = _spread_of(found, sums, data.n, correct=options.correct_serial_correlation)
+    if spread is None or request.uncertainty == "effective-n":
+        return Inferred(spread)
+    root = None if data.weights is None else np.sqrt(data.weights)
+    # Of weighted values the noise is permuted, not the level.
+    level = 0.0 if root is None else float(found.theta[0] + found.theta[1] * spread.center)
+    fitted = Fitted(
+        y=data.y,
+        residual=found.residual,
+        beside=np.full(data.n, level),
+        root=root,
+        fit=Refit(found.theta, spread, _at_ends(found.theta), found.sigma),
+        axes=spread.axes,
+        stderr=spread.stderr(_ENDS),
+        has_trend=True,
+        independent=lambda: _spread_of(found, sums, data.n, correct=False),
+        scored=lambda: Scored(
+            data.t, point_scores(found.residual, root, found.sigma, found.loss), data.columns, root
+        ),
+        again=lambda values: _refit(request, data, values, quantisation),
+    )
+    return infer(fitted, request.uncertainty, request.level, options.resamples, request.seed)
+
+
+def _at_ends(theta: FloatArray) -> FloatArray:
+    """Values of a line at the ends of the frame, between which nothing of it lies farther off."""
+    return np.asarray(theta[0] + _ENDS[:, 1] * theta[1], dtype=np.float64)
+
+
 def _spread_of(found: Found, sums: FloatArray, n: int, *, correct: bool) -> LineUncertainty | None:
     return line_uncertainty(sums, n, found.sigma, found.spread, correct_serial_correlation=correct)
 
 
-def _refit(request: Request, data: LineData, values: FloatArray, quantisation: Quantisation) -> Refit | None:
+def _refit(
+    request: Request, data: LineData, values: FloatArray, quantisation: Quantisation
+) -> Refit[LineUncertainty] | None:
     """Run the whole procedure on other values at the same times."""
     again = LineData(data.t, values, data.weights)
     options = request.options
@@ -204,23 +235,7 @@ def _refit(request: Request, data: LineData, values: FloatArray, quantisation: Q
         root = None if data.weights is None else np.sqrt(data.weights)
         sums = influence_sums(data.t, values, found.residual, root, found.sigma, found.threshold, found.loss)
     spread = _spread_of(found, sums, data.n, correct=options.correct_serial_correlation)
-    return None if spread is None else Refit(found.theta, spread)
-
-
-def _describe(inferred: Inferred, level: float) -> Uncertainty:
-    spread = inferred.spread
-    if spread is None:
-        return Uncertainty("none", level, None, None, None)
-    return Uncertainty(
-        method=spread.method,
-        level=level,
-        effective_n=spread.effective_n,
-        lag1=spread.lag1,
-        dof=spread.dof,
-        resamples=inferred.resamples,
-        block=inferred.block,
-        stability=inferred.stability,
-    )
+    return None if spread is None else Refit(found.theta, spread, _at_ends(found.theta), found.sigma)
 
 
 def _refuse(series: Series) -> NoFit | None:

@@ -13,7 +13,6 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from scipy.optimize import brentq
 from scipy.special import ndtr, stdtr
 
 from estimators.arrays import LARGEST_TIME, LARGEST_VALUE, InputError
@@ -237,4 +236,7 @@ def _standard_errors(curve: Curve, at: float, value: float, band: str) -> float:
         highest *= 2.0
         if highest > 1e6:
             return math.inf
+    # Imported here: few need it, and it takes a tenth of the start of a program.
+    from scipy.optimize import brentq  # noqa: PLC0415
+
     return float(brentq(short, 0.0, highest))

@@ -10,7 +10,6 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize import brentq
 
 from estimators.arrays import FloatArray
 from estimators.trends.curve import Curve, LineGeometry
@@ -120,6 +119,9 @@ def _on_a_grid(
     ahead: Callable[[FloatArray], FloatArray], start: float, span: float, limit: float
 ) -> float | None:
     """First change of sign after the start, refined; passages shorter than the grid are overlooked."""
+    # Imported here: few need it, and it takes a tenth of the start of a program.
+    from scipy.optimize import brentq  # noqa: PLC0415
+
     near = np.linspace(0.0, 2.0, _FINE)
     far = np.geomspace(2.0, _FARTHEST_SPANS, _COARSE)[1:]
     at = start + span * np.concatenate((near, far))

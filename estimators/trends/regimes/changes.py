@@ -31,8 +31,11 @@ MOST_READINGS = 1000
 _ROUNDS = 5
 _CONSISTENT = 0.97335
 """Variance of a standard normal variable within the cut of 3."""
-_NOTABLE = 1.0
+_NOTABLE = 2.0
 """Standard errors from which a serial correlation counts."""
+_CAUTION = 1.5
+"""Standard errors by which it is then raised."""
+_MOST_CORRELATION = 0.98
 
 
 def find_changes(
@@ -130,7 +133,8 @@ def _scale_of(readings: Readings, pieces: list[Piece]) -> float:
 def _correlation(readings: Readings, pieces: list[Piece]) -> tuple[float, float]:
     """How many correlated readings are worth one, and the noise scale that their differences tell.
 
-    The first is 1 + 2 w rho / (1 - rho) (METHODS_TRENDS: "Interval"). Lines that follow the wander of
+    The first is 1 + 2 w rho / (1 - rho) (METHODS_TRENDS: "Interval"), w the share of followers whose
+    neighbour follows as well. Lines that follow the wander of
     correlated noise take its correlation and some of its scale away with them; differences hardly notice
     lines. Of first-order autoregressive noise those over one step have the variance 2 sigma^2 (1 - rho),
     those over two 1 + rho times as much.
@@ -140,21 +144,23 @@ def _correlation(readings: Readings, pieces: list[Piece]) -> tuple[float, float]
     tuple of float
         1 and 0 where the readings show no correlation.
     """
-    steps, leaps, total = np.zeros(2), np.zeros(2), 0
+    steps, leaps, followers = np.zeros(2), np.zeros(2), 0
     for piece in pieces:
         scores = readings.scores(piece.fitted.line, piece.own)
         scores = np.where(np.abs(scores) <= CUT, scores, np.nan)
         steps += _squares(scores[1:] - scores[:-1])
         leaps += _squares(scores[2:] - scores[:-2])
-        total += piece.own.size
+        followers += int(np.count_nonzero(np.isfinite(scores)))
     (step, pairs), (leap, triples) = steps.tolist(), leaps.tolist()
     if min(pairs, triples) < LEAST_READINGS or step <= 0.0:
         return 1.0, 0.0
-    lag1 = min((leap / triples) / (step / pairs) - 1.0, 0.98)
+    lag1 = min((leap / triples) / (step / pairs) - 1.0, _MOST_CORRELATION)
     if lag1 <= _NOTABLE / math.sqrt(pairs):
         return 1.0, 0.0
     scale = readings.sigma * math.sqrt(0.5 * step / pairs / (1.0 - lag1))
-    return 1.0 + 2.0 * (pairs / total) * lag1 / (1.0 - lag1), scale
+    # The number is convex in the correlation, and a price that is too low makes changes out of wander.
+    cautious = min(lag1 + _CAUTION * math.sqrt((1.0 - lag1 * lag1) / pairs), _MOST_CORRELATION)
+    return 1.0 + 2.0 * (pairs / followers) * cautious / (1.0 - cautious), scale
 
 
 def _squares(differences: FloatArray) -> FloatArray:

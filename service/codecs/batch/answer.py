@@ -15,8 +15,11 @@ import pyarrow as pa
 
 import estimators
 from estimators.arrays import Reason
+from estimators.trends.bases.periods import MOST_FOUND
+from service.codecs.batch.questions import crossing_columns, regime_columns
 from service.codecs.batch.rows import Batch
 from service.codecs.columns import UNIT_NANOSECONDS, TimeForm, Times
+from service.schemas.options import FitArguments
 
 if TYPE_CHECKING:
     from estimators import TrendTable
@@ -64,7 +67,7 @@ class Answer:
         return None if self.form.kind == "number" else "second"
 
 
-def parameters_of(model: str) -> tuple[str, ...]:
+def parameters_of(arguments: FitArguments) -> tuple[str, ...]:
     """Names of the parameters that a series may have, those that no series of a slice has among them.
 
     The columns of an answer are settled before its first slice is fitted; where the shape is told from the
@@ -72,15 +75,25 @@ def parameters_of(model: str) -> tuple[str, ...]:
 
     Examples
     --------
-    >>> parameters_of("exponential")
+    >>> parameters_of(FitArguments(model="exponential"))
     ('rate', 'level')
+    >>> parameters_of(FitArguments(model="constant", seasonal=["year"]))
+    ('level', 'season_1_amplitude', 'season_1_peak')
     """
     known = estimators.models()
     of_all = dict.fromkeys(name for row in known.values() for name in row.parameters)
-    return known[model].parameters or tuple(of_all)
+    names = list(known[arguments.model].parameters or of_all)
+    names += [f"power_{power}" for power in range(3, (arguments.degree or 1) + 1)]
+    seasonal = arguments.seasonal
+    seasons = 0 if seasonal is None else MOST_FOUND if seasonal == "auto" else len(seasonal)
+    for season in range(1, seasons + 1):
+        names += [f"season_{season}_amplitude", f"season_{season}_peak"]
+    return tuple(names)
 
 
-def to_record_batch(batch: Batch, first: int, table: TrendTable, *, points: bool) -> Any:
+def to_record_batch(
+    batch: Batch, first: int, table: TrendTable, arguments: FitArguments, *, points: bool, with_horizon: bool
+) -> Any:
     """Record batch of some series of a batch.
 
     Parameters
@@ -90,7 +103,10 @@ def to_record_batch(batch: Batch, first: int, table: TrendTable, *, points: bool
         Place of the first of these series.
     table : TrendTable
         Fits of the series from there on.
+    arguments : FitArguments
     points : bool
+    with_horizon : bool
+        Whether the values to reach are wanted by some time.
 
     Returns
     -------
@@ -103,8 +119,11 @@ def to_record_batch(batch: Batch, first: int, table: TrendTable, *, points: bool
         "fitted": pa.array(table.fitted),
         "reason": _texts(table.reason),
         "message": _texts(table.message),
+        "model": _texts(table.models),
     }
-    for name in parameters_of(table.model):
+    if arguments.model in ("exponential", "auto"):
+        columns["noise"] = _texts(table.noise)
+    for name in parameters_of(arguments):
         estimates = table.parameters.get(name)
         for part, title in _PARTS.items():
             found = np.full(len(table), np.nan) if estimates is None else getattr(estimates, part)
@@ -113,6 +132,9 @@ def to_record_batch(batch: Batch, first: int, table: TrendTable, *, points: bool
     columns["n"] = pa.array(np.asarray(table.n, dtype=np.int64))
     columns["inliers"] = pa.array(np.asarray(table.inliers, dtype=np.int64))
     columns |= {name: _numbers(getattr(table, name)) for name in FIGURES}
+    if arguments.regime == "last":
+        columns |= regime_columns(table, batch.form)
+    columns |= crossing_columns(table, arguments, batch.form, with_horizon=with_horizon)
     columns["notices"] = pa.array([list(codes) for codes in table.notices], pa.list_(pa.string()))
     if batch.lat is not None and batch.lon is not None:
         columns["lat"] = _numbers(batch.lat[first:last])

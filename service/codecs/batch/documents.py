@@ -15,8 +15,6 @@ from service.codecs.batch.answer import Answer
 from service.codecs.batch.cells_out import to_rows, to_values
 from service.errors import Problem, ProblemType
 
-GEOJSON = "application/geo+json"
-
 
 def write_json(answer: Answer) -> Iterator[bytes]:
     """One document: what was asked for, and a column per number."""

@@ -1,29 +1,45 @@
-"""Which codec reads a batch and which writes its answer. A new format is one file and one line here."""
+"""Which codec reads a batch and which writes its answer. A new format is one file and one line here.
+
+Codecs are named, and imported when a body or an answer asks for one: Arrow takes long to import, and who
+sends single series never needs it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any
+from pkgutil import resolve_name
+from typing import TYPE_CHECKING, Any, cast
 
-from service.codecs.batch.answer import Answer
-from service.codecs.batch.arrow import read_arrow
-from service.codecs.batch.csv import read_csv
-from service.codecs.batch.documents import GEOJSON, write_geojson, write_json, write_ndjson
-from service.codecs.batch.json import read_json
-from service.codecs.batch.parquet import read_parquet
-from service.codecs.batch.rows import Batch, Reading
-from service.codecs.batch.tables import write_arrow, write_csv, write_parquet
 from service.codecs.negotiation import best_offer, media_type_of
 from service.schemas.batch import BatchFormat
+
+if TYPE_CHECKING:
+    from service.codecs.batch.answer import Answer
+    from service.codecs.batch.rows import Batch, Reading
 
 ARROW_STREAM = "application/vnd.apache.arrow.stream"
 ARROW_FILE = "application/vnd.apache.arrow.file"
 PARQUET = "application/vnd.apache.parquet"
 NDJSON = "application/x-ndjson"
+GEOJSON = "application/geo+json"
 
-Read = Callable[[Any, Reading], Batch]
-Write = Callable[[Answer], Iterator[bytes]]
+
+@dataclass(frozen=True, slots=True)
+class BatchReader:
+    """A format of bodies.
+
+    Attributes
+    ----------
+    codec : str
+        ``module:function`` in this package.
+    """
+
+    codec: str
+
+    def read(self, source: Any, reading: Reading) -> Batch:
+        """Batch of a body, as a seekable ``pyarrow.NativeFile``."""
+        return cast("Callable[[Any, Reading], Batch]", _find(self.codec))(source, reading)
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,8 +54,8 @@ class BatchWriter:
         As in ``Accept``, without parameters.
     content_type : str
         As in the answer's ``Content-Type``.
-    write : callable
-        Generator of bytes.
+    codec : str
+        ``module:function`` in this package, a generator of bytes.
     is_streamed : bool
         Whether the answer begins before all series are fitted.
     """
@@ -47,30 +63,38 @@ class BatchWriter:
     name: BatchFormat
     media_type: str
     content_type: str
-    write: Write
+    codec: str
     is_streamed: bool = False
 
+    def write(self, answer: Answer) -> Iterator[bytes]:
+        """Bytes of an answer, piece by piece."""
+        return cast("Callable[[Answer], Iterator[bytes]]", _find(self.codec))(answer)
 
-READERS: dict[str, Read] = {
-    "application/json": read_json,
-    "text/csv": read_csv,
-    ARROW_STREAM: read_arrow,
-    ARROW_FILE: read_arrow,
-    PARQUET: read_parquet,
+
+def _find(codec: str) -> Any:
+    return resolve_name(f"service.codecs.batch.{codec}")
+
+
+READERS: dict[str, BatchReader] = {
+    "application/json": BatchReader("json:read_json"),
+    "text/csv": BatchReader("csv:read_csv"),
+    ARROW_STREAM: BatchReader("arrow:read_arrow"),
+    ARROW_FILE: BatchReader("arrow:read_arrow"),
+    PARQUET: BatchReader("parquet:read_parquet"),
 }
 
 #: In the order of preference where the caller has none.
 WRITERS: tuple[BatchWriter, ...] = (
-    BatchWriter("json", "application/json", "application/json", write_json),
-    BatchWriter("csv", "text/csv", "text/csv; charset=utf-8; header=present", write_csv),
-    BatchWriter("arrow", ARROW_STREAM, ARROW_STREAM, write_arrow),
-    BatchWriter("parquet", PARQUET, PARQUET, write_parquet),
-    BatchWriter("ndjson", NDJSON, NDJSON, write_ndjson, is_streamed=True),
-    BatchWriter("geojson", GEOJSON, GEOJSON, write_geojson),
+    BatchWriter("json", "application/json", "application/json", "documents:write_json"),
+    BatchWriter("csv", "text/csv", "text/csv; charset=utf-8; header=present", "tables:write_csv"),
+    BatchWriter("arrow", ARROW_STREAM, ARROW_STREAM, "tables:write_arrow"),
+    BatchWriter("parquet", PARQUET, PARQUET, "tables:write_parquet"),
+    BatchWriter("ndjson", NDJSON, NDJSON, "documents:write_ndjson", is_streamed=True),
+    BatchWriter("geojson", GEOJSON, GEOJSON, "documents:write_geojson"),
 )
 
 
-def choose_reader(content_type: str | None, content_encoding: str | None) -> Read:
+def choose_reader(content_type: str | None, content_encoding: str | None) -> BatchReader:
     """Codec of a body (415 if there is none)."""
     return READERS[media_type_of(content_type, content_encoding, tuple(READERS))]
 
