@@ -5,8 +5,9 @@ from importlib.metadata import version
 
 from estimators.arrays import InputError
 from estimators.consensus.presets import PRESETS, Preset
+from estimators.notices import Notice, NoticeCode
 from estimators.options import RobustOptions
-from estimators.result import Estimate, NoFit, NoFitReason, Notice, NoticeCode
+from estimators.result import Estimate, NoFit, NoFitReason
 from estimators.trends.fit import fit_trend
 from estimators.trends.many import fit_trends
 from estimators.trends.models import MODELS, TrendModel

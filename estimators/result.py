@@ -7,7 +7,6 @@ verbs and their answers").
 from __future__ import annotations
 
 import html
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, Literal
@@ -15,93 +14,10 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from estimators.arrays import BoolArray, CodeArray, FloatArray, Reason
+from estimators.notices import Notice, notice_to_dict
 
 if TYPE_CHECKING:
     import pandas as pd
-
-
-class NoticeCode(StrEnum):
-    """Typed warnings: each has one meaning and one sentence, in :data:`NOTICE_MEANINGS`."""
-
-    few_points = "few_points"
-    no_redundancy = "no_redundancy"
-    ambiguous_structure = "ambiguous_structure"
-    low_inlier_ratio = "low_inlier_ratio"
-    low_sampling_probability = "low_sampling_probability"
-    serial_correlation = "serial_correlation"
-    quantised_values = "quantised_values"
-    zero_noise = "zero_noise"
-    constant_values = "constant_values"
-    duplicate_times = "duplicate_times"
-    unsorted_times = "unsorted_times"
-    missing_values = "missing_values"
-    invalid_values = "invalid_values"
-    float_nanoseconds = "float_nanoseconds"
-    extrapolation = "extrapolation"
-    not_robust = "not_robust"
-    earlier_regimes = "earlier_regimes"
-    nonpositive_values = "nonpositive_values"
-    undetermined_noise = "undetermined_noise"
-    rate_near_zero = "rate_near_zero"
-
-
-NOTICE_MEANINGS: Mapping[NoticeCode, str] = {
-    NoticeCode.few_points: "So few points that outliers can hardly be told from inliers.",
-    NoticeCode.no_redundancy: (
-        "The line passes through the points exactly; there is no uncertainty to report."
-    ),
-    NoticeCode.ambiguous_structure: "Another trend explains the series nearly as well; both are reported.",
-    NoticeCode.low_inlier_ratio: "Fewer than half of the points follow the trend.",
-    NoticeCode.low_sampling_probability: "The hypotheses drawn may have missed a clean sample.",
-    NoticeCode.serial_correlation: (
-        "Neighbouring residuals are correlated; intervals are widened accordingly."
-    ),
-    NoticeCode.quantised_values: "The values are rounded coarsely compared with their noise.",
-    NoticeCode.zero_noise: ("The points lie exactly on the trend; the noise scale is set by the arithmetic."),
-    NoticeCode.constant_values: "All values are equal.",
-    NoticeCode.duplicate_times: "Several points share a time; they are all used.",
-    NoticeCode.unsorted_times: "The times were not in order; the answer keeps the order of the input.",
-    NoticeCode.missing_values: "Rows with a missing time or value take no part in the fit.",
-    NoticeCode.invalid_values: "Rows with an infinite time or value take no part in the fit.",
-    NoticeCode.float_nanoseconds: "Epoch nanoseconds as floats are 256 ns apart; send integers or datetimes.",
-    NoticeCode.extrapolation: "Some predictions lie outside the time span of the data.",
-    NoticeCode.not_robust: "This method is offered for comparison; outliers can move it.",
-    NoticeCode.earlier_regimes: (
-        "The series followed other lines before; the trend is that of the present regime."
-    ),
-    NoticeCode.nonpositive_values: (
-        "Values of 0 or of the other sign cannot occur under multiplicative noise; they are left out."
-    ),
-    NoticeCode.undetermined_noise: (
-        "The data tell neither multiplicative from additive noise; both answers are reported."
-    ),
-    NoticeCode.rate_near_zero: (
-        "The interval of the rate holds 0; a doubling or halving time has no upper limit."
-    ),
-}
-
-
-@dataclass(frozen=True, slots=True)
-class Notice:
-    """A typed warning in an answer.
-
-    Attributes
-    ----------
-    code : NoticeCode
-    message : str
-        A sentence for people.
-    detail : mapping
-        Numbers behind the sentence (JSON-safe).
-    """
-
-    code: NoticeCode
-    message: str
-    detail: Mapping[str, Any] = field(default_factory=dict)
-
-
-def notice(code: NoticeCode, **detail: Any) -> Notice:
-    """Notice with the standard sentence of its code."""
-    return Notice(code, NOTICE_MEANINGS[code], detail)
 
 
 @dataclass(frozen=True, slots=True)
@@ -354,8 +270,3 @@ class NoFit:
         notes = "".join(f"<li>{html.escape(item.message)}</li>" for item in self.notices)
         listed = f"<ul>{notes}</ul>" if notes else ""
         return f"<p><b>No fit</b> ({self.reason.value}): {html.escape(self.message)}</p>{listed}"
-
-
-def notice_to_dict(item: Notice) -> dict[str, Any]:
-    """JSON-safe form of a notice."""
-    return {"code": item.code.value, "message": item.message, "detail": dict(item.detail)}

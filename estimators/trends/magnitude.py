@@ -9,7 +9,7 @@ import dataclasses
 import math
 
 from estimators.arrays import LARGEST_VALUE, FloatArray
-from estimators.result import Notice
+from estimators.notices import Notice
 from estimators.trends.trend import Trend
 
 _IN_UNITS_OF_THE_VALUES = frozenset({"sigma", "quantum", "slope", "intercept", "level"})

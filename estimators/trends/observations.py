@@ -12,7 +12,7 @@ from estimators.consensus.presets import Preset
 from estimators.inference.columns import ColumnUncertainty
 from estimators.inference.sandwich import LineUncertainty
 from estimators.noise.resolution import Quantisation
-from estimators.result import Notice, NoticeCode, notice
+from estimators.notices import Notice, NoticeCode, notice
 from estimators.series import Series
 from estimators.trends.trend import RunnerUp
 

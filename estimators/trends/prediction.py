@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from estimators.arrays import FloatArray, InputError
 from estimators.inference.intervals import student_quantile
-from estimators.result import Notice, NoticeCode, notice
+from estimators.notices import Notice, NoticeCode, notice
 from estimators.trends.bases.own import bands_with_columns
 from estimators.trends.presentation.dictionary import prediction_to_dict
 from estimators.trends.unpack import plain_column

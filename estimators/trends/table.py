@@ -72,7 +72,7 @@ class TrendTable:
     inlier_ratio, sigma, threshold, p_value, r2, rmse, effective_n, lag1, dof : ndarray of float64
         As in :class:`Trend`, shape (series,); NaN where there is none.
     notices : tuple of tuple of str
-        Codes of :class:`estimators.result.NoticeCode` per series.
+        Codes of :class:`estimators.notices.NoticeCode` per series.
 
     Examples
     --------

@@ -13,13 +13,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from estimators.arrays import ArrayLike, FloatArray
-from estimators.result import (
-    Consensus,
-    Estimate,
-    Notice,
-    Points,
-    Uncertainty,
-)
+from estimators.notices import Notice
+from estimators.result import Consensus, Estimate, Points, Uncertainty
 from estimators.time_axis import TimeAxis
 from estimators.trends.bases.design import Season
 from estimators.trends.curve import Curve

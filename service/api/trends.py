@@ -8,7 +8,8 @@ from fastapi import APIRouter, Query, Request, Response
 
 from estimators import InputError, NoFit, RobustOptions, Trend, fit_trend
 from estimators.consensus.cancellation import cancelled_by
-from estimators.result import NoFitReason, notice_to_dict
+from estimators.notices import notice_to_dict
+from estimators.result import NoFitReason
 from service.codecs.columns import Columns
 from service.codecs.limits import check_columns
 from service.codecs.registry import WRITERS, Read, Writer, choose_reader, choose_writer

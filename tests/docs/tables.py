@@ -14,7 +14,7 @@ from dataclasses import fields
 from pydantic import SecretStr
 
 from estimators import RobustOptions, methods, models
-from estimators.result import NOTICE_MEANINGS
+from estimators.notices import NOTICE_MEANINGS
 from service.errors import ProblemType
 from service.settings import Settings
 

@@ -8,7 +8,8 @@ import numpy as np
 
 from estimators.arrays import Reason
 from estimators.inference.intervals import student_quantile
-from estimators.result import Consensus, Estimate, Ledger, Notice, Points, Uncertainty
+from estimators.notices import Notice
+from estimators.result import Consensus, Estimate, Ledger, Points, Uncertainty
 from estimators.time_axis import TimeAxis
 from estimators.trends.curve import LineGeometry
 from estimators.trends.trend import RunnerUp, Trend

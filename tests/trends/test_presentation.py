@@ -7,7 +7,7 @@ import pandas as pd
 from hypothesis import given
 from hypothesis import strategies as st
 
-from estimators.result import NoticeCode, notice
+from estimators.notices import NoticeCode, notice
 from estimators.trends.presentation.dictionary import fitted_values
 from estimators.trends.presentation.json_values import iso_utc, time_to_json
 from estimators.trends.trend import RunnerUp

@@ -6,7 +6,7 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
-from estimators.result import NOTICE_MEANINGS, NoticeCode, notice
+from estimators.notices import NOTICE_MEANINGS, NoticeCode, notice
 from estimators.trends.presentation.layout import WIDTH, to_html, to_text
 from estimators.trends.presentation.report import describe
 from estimators.trends.trend import RunnerUp

@@ -6,8 +6,8 @@ import numpy as np
 
 from estimators.arrays import BoolArray, FloatArray
 from estimators.consensus.presets import PRESETS
+from estimators.notices import NoticeCode
 from estimators.regression.influence import INLIERS
-from estimators.result import NoticeCode
 from estimators.series import EPOCH_NANOSECONDS
 from estimators.trends.batch.group import Group
 from estimators.trends.batch.lines import Lines

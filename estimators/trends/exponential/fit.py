@@ -9,7 +9,8 @@ import numpy as np
 
 from estimators.arrays import InputError
 from estimators.consensus.search.structure import StructureSearch
-from estimators.result import NoFit, NoFitReason, Notice, NoticeCode, notice
+from estimators.notices import Notice, NoticeCode, notice
+from estimators.result import NoFit, NoFitReason
 from estimators.series import Series
 from estimators.trends.exponential.curve import ExponentialCurve
 from estimators.trends.exponential.derived import derived_estimates, is_open

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from estimators.arrays import FloatArray
-from estimators.result import Uncertainty, notice_to_dict
+from estimators.notices import notice_to_dict
+from estimators.result import Uncertainty
 from estimators.trends.bases.own import values_at_rows
 from estimators.trends.presentation.json_values import (
     estimate_to_dict,

@@ -10,7 +10,8 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
-from estimators.result import Consensus, Notice, NoticeCode, Uncertainty
+from estimators.notices import Notice, NoticeCode
+from estimators.result import Consensus, Uncertainty
 from estimators.trends.evidence import evidence_sentence
 from estimators.trends.exponential.domain import noise_sentence
 from estimators.trends.presentation.question_words import question_facts

@@ -13,7 +13,8 @@ import numpy as np
 from estimators.arrays import FloatArray, Reason
 from estimators.inference.intervals import student_quantile
 from estimators.noise.resolution import find_quantisation, scale_floor
-from estimators.result import Estimate, NoFit, NoticeCode, notice
+from estimators.notices import NoticeCode, notice
+from estimators.result import Estimate, NoFit
 from estimators.series import Series
 from estimators.trends.line.fit import LEAST_FLOOR, fit_line
 from estimators.trends.regimes.changes import find_changes
