@@ -6,8 +6,11 @@ The network is the host's; a service in a container gets a free port.
 
 from __future__ import annotations
 
+import contextlib
 import json
+import os
 import shutil
+import signal
 import socket
 import subprocess
 import time
@@ -95,7 +98,7 @@ class Image:
                 service.wait_until_ready()
                 yield service
             finally:
-                process.kill()
+                service.stop()
 
 
 @dataclass(frozen=True)
@@ -115,6 +118,16 @@ class Service:
         started = self.process.pid
         return int(Path(f"/proc/{started}/task/{started}/children").read_text())
 
+    def stop(self) -> None:
+        """End the service at once.
+
+        It is not enough to end the process that started it: the kernel forgets to end a child with its parent
+        when the child becomes another user.
+        """
+        with contextlib.suppress(ProcessLookupError, FileNotFoundError, ValueError):
+            os.kill(self.pid, signal.SIGKILL)
+        self.process.kill()
+
     def wait_until_ready(self) -> None:
         give_up = time.monotonic() + START_SECONDS
         while self.process.poll() is None and time.monotonic() < give_up:
@@ -124,7 +137,7 @@ class Service:
                     return
             except (urllib.error.URLError, ConnectionError, TimeoutError):
                 time.sleep(0.01)
-        self.process.kill()
+        self.stop()
         raise RuntimeError(f"the service did not start: {self.process.communicate()[1]}")
 
 
