@@ -170,6 +170,8 @@ def _orders(data: LinearData, offsets: IntArray, policies: Policies, seed: int) 
     """Ranks of the points within each series, if the sampler has an order of its own."""
     if offsets.size == 2:
         return policies.sampler.rank(data.weights, data.n, seed)
+    if policies.sampler.rank(None, 1, seed).size == 0:
+        return _NO_ORDER
     stretches = [
         policies.sampler.rank(None if data.weights is None else data.weights[a:b], b - a, seed)
         for a, b in pairwise(offsets.tolist())

@@ -35,6 +35,12 @@ CELLS_PER_SIGMA = 64
 """Resolution of a tabulated weight function, in cells per noise scale."""
 
 
+def truncated_jump(c: float) -> float:
+    """Share of psi' that a loss truncated at ``c`` noise scales loses to its jumps: see :attr:`Loss.jump`."""
+    density = math.exp(-0.5 * c * c) / math.sqrt(2.0 * math.pi)
+    return 2.0 * c * density / math.erf(c / math.sqrt(2.0))
+
+
 @dataclass(frozen=True, slots=True)
 class Loss:
     """A loss and its tuning constant.
@@ -61,9 +67,7 @@ class Loss:
         """
         if self.kind is not LossKind.truncated:
             return 0.0
-        c = self.tuning
-        density = math.exp(-0.5 * c * c) / math.sqrt(2.0 * math.pi)
-        return 2.0 * c * density / math.erf(c / math.sqrt(2.0))
+        return truncated_jump(self.tuning)
 
     def psi(self, u: FloatArray) -> FloatArray:
         """Influence of standardised residuals ``u``, shape (n,)."""

@@ -23,7 +23,7 @@ from estimators.inference.probability import posterior_of
 from estimators.kernels import kernel, ro
 from estimators.options import RobustOptions
 from estimators.regression.influence import INLIERS, SUMS, sum_curvature, sum_scatter
-from estimators.regression.loss import Loss, LossKind
+from estimators.regression.loss import LossKind, truncated_jump
 from estimators.trends.batch.group import Group, Known
 
 _SLICE = 8192
@@ -175,7 +175,7 @@ def find_consensus(
         sigma = np.empty(m)
         fill_sigma(np.where(found, records.numbers[:, SCATTER], 1.0), used, group.floor, sigma)
     tuning = used / sigma
-    jump = np.array([Loss(LossKind.truncated, c).jump for c in tuning.tolist()])
+    jump = np.array([truncated_jump(c) for c in tuning.tolist()])
     sums = np.empty((m, SUMS))
     probability = np.empty(points)
     weigh_consensus(
