@@ -17,6 +17,7 @@ REQUEST_ID_HEADER = "x-request-id"
 #: An id from outside is kept if it is a plain token; anything else could forge lines of a log.
 _TOKEN = re.compile(r"[A-Za-z0-9._-]{1,64}")
 
+READINESS_PATH = "/readyz"
 _LONGEST_PATH = 200
 
 
@@ -61,7 +62,9 @@ class ObserveRequests:
             seconds = time.perf_counter() - start
             route = getattr(scope.get("route"), "path", "unmatched")
             self._metrics.count_request(route, scope["method"], status, seconds)
-            write = self._log.error if status >= 500 else self._log.info
+            # That it is not ready yet is what /readyz is asked for, and no failure.
+            failed = status >= 500 and not (status == 503 and route == READINESS_PATH)
+            write = self._log.error if failed else self._log.info
             write(
                 "request",
                 request_id=request_id,
