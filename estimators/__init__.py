@@ -5,6 +5,14 @@ from importlib.metadata import version
 
 from estimators.arrays import InputError
 from estimators.consensus.presets import PRESETS, Preset
+from estimators.gnss.fix import Fix
+from estimators.gnss.locate import locate
+from estimators.gnss.methods.registry import POSITION_METHODS, PositionMethod
+from estimators.gnss.options import PositionOptions
+from estimators.gnss.series.epochs import Epoch, Epochs
+from estimators.gnss.series.fixes import EpochFix, Fixes
+from estimators.gnss.series.locate_series import locate_series
+from estimators.gnss.series.stream import locate_stream
 from estimators.notices import Notice, NoticeCode
 from estimators.options import RobustOptions
 from estimators.result import Estimate, NoFit, NoFitReason
@@ -21,12 +29,19 @@ from estimators.trends.trend import Trend
 __all__ = [
     "Crossing",
     "Difference",
+    "Epoch",
+    "EpochFix",
+    "Epochs",
     "Estimate",
+    "Fix",
+    "Fixes",
     "InputError",
     "NoFit",
     "NoFitReason",
     "Notice",
     "NoticeCode",
+    "PositionMethod",
+    "PositionOptions",
     "Prediction",
     "Preset",
     "Regime",
@@ -37,8 +52,12 @@ __all__ = [
     "__version__",
     "fit_trend",
     "fit_trends",
+    "locate",
+    "locate_series",
+    "locate_stream",
     "methods",
     "models",
+    "position_methods",
 ]
 
 __version__ = version("plumbline")
@@ -52,3 +71,8 @@ def methods() -> Mapping[str, Preset]:
 def models() -> Mapping[str, TrendModel]:
     """Return the shapes a trend can have: what ``model=`` takes."""
     return MODELS
+
+
+def position_methods() -> Mapping[str, PositionMethod]:
+    """Return the methods of fault exclusion, ``auto`` first: what ``method=`` of :func:`locate` takes."""
+    return POSITION_METHODS

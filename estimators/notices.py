@@ -31,6 +31,11 @@ class NoticeCode(StrEnum):
     nonpositive_values = "nonpositive_values"
     undetermined_noise = "undetermined_noise"
     rate_near_zero = "rate_near_zero"
+    ambiguous_faults = "ambiguous_faults"
+    unchecked_position = "unchecked_position"
+    untestable_satellites = "untestable_satellites"
+    inconsistent_ranges = "inconsistent_ranges"
+    satellites_below_mask = "satellites_below_mask"
 
 
 NOTICE_MEANINGS: Mapping[NoticeCode, str] = {
@@ -66,6 +71,15 @@ NOTICE_MEANINGS: Mapping[NoticeCode, str] = {
     NoticeCode.rate_near_zero: (
         "The interval of the rate holds 0; a doubling or halving time has no upper limit."
     ),
+    NoticeCode.ambiguous_faults: (
+        "Other sets of faulty satellites explain the ranges nearly as well, and lead elsewhere."
+    ),
+    NoticeCode.unchecked_position: (
+        "As many satellites as unknowns: a faulty one would go unnoticed and move the position."
+    ),
+    NoticeCode.untestable_satellites: "Nothing checks the ranges of some satellites.",
+    NoticeCode.inconsistent_ranges: "The ranges that are used disagree by more than their noise.",
+    NoticeCode.satellites_below_mask: "Satellites under the elevation mask take no part.",
 }
 
 

@@ -203,6 +203,9 @@ class NoFitReason(StrEnum):
     no_consensus = "no_consensus"
     too_large = "too_large"
     invalid_input = "invalid_input"
+    too_few_satellites = "too_few_satellites"
+    undetermined_geometry = "undetermined_geometry"
+    implausible_position = "implausible_position"
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,3 +16,13 @@ def trend_data() -> Path:
     if not folder.is_dir():
         pytest.skip("the published data sets are not here; PLUMBLINE_TEST_DATA says where they are")
     return folder
+
+
+@pytest.fixture(scope="session")
+def gnss_data() -> Path:
+    """Folder of the recorded pseudoranges; ``PLUMBLINE_TEST_DATA`` names the folder that holds ``gnss``."""
+    beside = Path(__file__).resolve().parents[2] / "shared" / "data"
+    folder = Path(os.environ.get("PLUMBLINE_TEST_DATA", beside)) / "gnss"
+    if not folder.is_dir():
+        pytest.skip("the recorded pseudoranges are not here; PLUMBLINE_TEST_DATA says where they are")
+    return folder

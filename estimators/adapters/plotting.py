@@ -91,7 +91,7 @@ def trend_figure(
     if theme not in PALETTES:
         raise InputError("theme", f"unknown theme {theme!r}; known: {', '.join(PALETTES)}")
     sheet = Sheet.of(trend, PALETTES[theme], width_px, height_px)
-    with _settings():
+    with drawing():
         figure = Figure(
             figsize=(width_px / _DPI, height_px / _DPI),
             dpi=_DPI,
@@ -132,7 +132,7 @@ def render(figure: Figure, format: FigureFormat) -> bytes:  # noqa: A002
     if format not in ("svg", "png"):
         raise InputError("format", f"unknown figure format {format!r}; known: svg, png")
     sink = io.BytesIO()
-    with _settings():
+    with drawing():
         if format == "svg":
             # The resolution is that of the images inside: twice the screen's, for screens that have it.
             figure.savefig(sink, format="svg", dpi=2 * _DPI, metadata={"Date": None, "Creator": None})
@@ -142,7 +142,7 @@ def render(figure: Figure, format: FigureFormat) -> bytes:  # noqa: A002
 
 
 @contextmanager
-def _settings() -> Iterator[None]:
+def drawing() -> Iterator[None]:
     """Put matplotlib's defaults and ours in force, whatever its user configured, one thread at a time."""
     ours = {"svg.hashsalt": "plumbline", "svg.fonttype": "none", "font.family": "sans-serif"}
     with _LOCK, mpl_style.context(["default", ours]), warnings.catch_warnings():

@@ -1,0 +1,1 @@
+"""Positions on and near the Earth: Cartesian, geodetic and local coordinates."""

@@ -1,0 +1,1 @@
+"""Positions from pseudoranges: fixes, faulty satellites, protection levels."""

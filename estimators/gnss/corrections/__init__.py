@@ -1,0 +1,1 @@
+"""Corrections of measured pseudoranges: satellite clock, ionosphere, troposphere, Earth rotation."""

@@ -1,0 +1,1 @@
+"""Methods of fault exclusion: one file each, one row each in the registry."""

@@ -1,0 +1,1 @@
+"""Where satellites are: broadcast ephemerides, evaluated at the time of transmission."""

@@ -1,0 +1,1 @@
+"""How a fix leaves Python: dict, GeoJSON, data frame and text."""

@@ -1,0 +1,130 @@
+"""A :class:`~estimators.gnss.fix.Fix` as a JSON-safe dict (the keys of the wire format) and as GeoJSON."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from estimators.arrays import FloatArray
+from estimators.notices import notice_to_dict
+
+if TYPE_CHECKING:
+    from estimators.gnss.fix import Fix, Rival, Satellites
+
+
+def finite(values: FloatArray) -> list[float | None]:
+    """Floats, with None for what is not finite."""
+    return [value if math.isfinite(value) else None for value in np.asarray(values).tolist()]
+
+
+def fix_to_dict(fix: Fix, *, satellites: bool = True) -> dict[str, Any]:
+    """JSON-safe form of an answer.
+
+    Parameters
+    ----------
+    fix : Fix
+    satellites : bool
+        Whether to include the columns per satellite.
+    """
+    consensus = fix.consensus
+    answer: dict[str, Any] = {
+        "method": fix.method,
+        "position": {
+            "ecef_m": fix.position_ecef_m.tolist(),
+            "lat_deg": fix.geodetic.lat_deg,
+            "lon_deg": fix.geodetic.lon_deg,
+            "height_m": fix.geodetic.height_m,
+        },
+        "covariance_enu_m2": fix.covariance_enu_m2.tolist(),
+        "clocks_m": dict(fix.clocks_m),
+        "dop": {
+            "gdop": fix.dop.geometric,
+            "pdop": fix.dop.position,
+            "hdop": fix.dop.horizontal,
+            "vdop": fix.dop.vertical,
+            "tdop": fix.dop.time,
+        },
+        "integrity": {
+            "hpl_m": fix.integrity.hpl_m,
+            "vpl_m": fix.integrity.vpl_m,
+            "risk": fix.integrity.risk,
+            "fault_prior": fix.integrity.fault_prior,
+            "method": fix.integrity.method,
+        },
+        "global_test": {
+            "statistic": fix.global_test.statistic,
+            "dof": fix.global_test.dof,
+            "threshold": fix.global_test.threshold,
+            "p_value": fix.global_test.p_value,
+        },
+        "ambiguous": fix.ambiguous,
+        "far_probability": fix.far_probability,
+        "rival": None if fix.rival is None else _rival(fix.rival, fix.satellites),
+        "sigma_scale": fix.sigma_scale,
+        "consensus": {
+            "n": consensus.n,
+            "inliers": consensus.inliers,
+            "inlier_ratio": consensus.inlier_ratio,
+            "scored": consensus.ledger.scored,
+            "search": consensus.search,
+        },
+        "notices": [notice_to_dict(item) for item in fix.notices],
+    }
+    if satellites:
+        answer["satellites"] = satellites_to_dict(fix.satellites)
+    return answer
+
+
+def satellites_to_dict(satellites: Satellites) -> dict[str, Any]:
+    """JSON-safe columns, one entry per input row."""
+    return {
+        "satellite": list(satellites.name),
+        "system": list(satellites.system),
+        "status": list(satellites.status),
+        "fault_probability": finite(satellites.fault_probability),
+        "residual_m": finite(satellites.residual_m),
+        "sigma_m": finite(satellites.sigma_m),
+        "statistic": finite(satellites.statistic),
+        "threshold": satellites.threshold,
+        "mdb_m": finite(satellites.mdb_m),
+        "azimuth_deg": finite(satellites.azimuth_deg),
+        "elevation_deg": finite(satellites.elevation_deg),
+        "reason": list(satellites.reason),
+    }
+
+
+def _rival(rival: Rival, satellites: Satellites) -> dict[str, Any]:
+    return {
+        "ecef_m": rival.position_ecef_m.tolist(),
+        "distance_m": rival.distance_m,
+        "probability": rival.probability,
+        "excluded": [name for name, out in zip(satellites.name, rival.excluded, strict=True) if out],
+    }
+
+
+def fix_to_feature(fix: Fix) -> dict[str, Any]:
+    """GeoJSON feature (RFC 7946): the position with what a map shows of it."""
+    place = fix.geodetic
+    return {
+        "type": "Feature",
+        "geometry": {
+            "type": "Point",
+            "coordinates": [round(place.lon_deg, 9), round(place.lat_deg, 9), round(place.height_m, 4)],
+        },
+        "properties": {
+            "method": fix.method,
+            "hpl_m": fix.hpl_m,
+            "vpl_m": fix.vpl_m,
+            "ambiguous": fix.ambiguous,
+            "used": int(fix.satellites.inlier.sum()),
+            "excluded": list(fix.excluded),
+        },
+    }
+
+
+def to_feature_collection(features: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """GeoJSON feature collection (RFC 7946)."""
+    return {"type": "FeatureCollection", "features": list(features)}

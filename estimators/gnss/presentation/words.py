@@ -1,0 +1,89 @@
+"""A fix in words, 80 columns wide: where, how sure, who lied and what to do about it."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from estimators.gnss.systems import SYSTEMS
+from estimators.notices import NoticeCode
+
+if TYPE_CHECKING:
+    from estimators.gnss.fix import Fix
+
+WIDTH = 80
+_LABEL = 13
+
+ADVICE: Mapping[NoticeCode, str] = MappingProxyType(
+    {
+        NoticeCode.ambiguous_faults: (
+            "Do not use the position alone: take several epochs together, or more systems."
+        ),
+        NoticeCode.unchecked_position: "Add a satellite, or take several epochs together.",
+        NoticeCode.untestable_satellites: (
+            "Add a second satellite of their system, or leave the system out."
+        ),
+        NoticeCode.inconsistent_ranges: "Look at the sigmas, and at faults that the alert limit tolerates.",
+    }
+)
+"""What to do about a notice."""
+
+
+def fix_to_text(fix: Fix) -> str:
+    """Text for people.
+
+    Parameters
+    ----------
+    fix : Fix
+
+    Returns
+    -------
+    str
+        Without a newline at the end.
+    """
+    place, satellites = fix.geodetic, fix.satellites
+    spread = [math.sqrt(fix.covariance_enu_m2[k, k]) for k in range(3)]
+    used = int(satellites.inlier.sum())
+    lines = [f"Position by {fix.method}", "━" * WIDTH]
+    lines += _labelled("Where", f"{place.lat_deg:.7f}° {place.lon_deg:.7f}° {place.height_m:.2f} m")
+    lines += _labelled("Std. error", f"{spread[0]:.2f} m east, {spread[1]:.2f} m north, {spread[2]:.2f} m up")
+    lines += _labelled(
+        "Protection",
+        f"{fix.hpl_m:.1f} m horizontally, {fix.vpl_m:.1f} m vertically, exceeded with probability "
+        f"{fix.integrity.risk:g} if each satellite is faulty with probability {fix.integrity.fault_prior:g}",
+    )
+    lines += _labelled("Satellites", f"{used} used of {len(satellites)}; HDOP {fix.dop.horizontal:.2f}")
+    clocks = ", ".join(f"{SYSTEMS[letter]} {value:.2f} m" for letter, value in fix.clocks_m.items())
+    lines += _labelled("Clocks", clocks)
+    out = [row for row, status in enumerate(satellites.status) if status == "excluded"]
+    if out:
+        lines += ["─" * WIDTH, "excluded      residual   elevation   azimuth   fault probability"]
+    for row in out:
+        lines.append(
+            f"{satellites.name[row]:<10}{satellites.residual_m[row]:>+10.1f} m"
+            f"{satellites.elevation_deg[row]:>10.0f}°{satellites.azimuth_deg[row]:>9.0f}°"
+            f"{satellites.fault_probability[row]:>16.3g}"
+        )
+    if fix.rival is not None and fix.ambiguous:
+        lines += _labelled(
+            "Rival", f"{fix.rival.distance_m:.0f} m away with probability {fix.rival.probability:.2g}"
+        )
+    if fix.notices:
+        lines.append("─" * WIDTH)
+    for item in fix.notices:
+        lines += _labelled("Note", f"{item.message} {ADVICE.get(item.code, '')}".rstrip())
+    return "\n".join(lines)
+
+
+def _labelled(label: str, sentence: str) -> list[str]:
+    return textwrap.wrap(
+        sentence,
+        WIDTH,
+        initial_indent=label.ljust(_LABEL),
+        subsequent_indent=" " * _LABEL,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )

@@ -1,0 +1,195 @@
+"""One epoch at its least-squares solution: what every method of fault exclusion works on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import types
+
+from estimators.arrays import BoolArray, FloatArray, IntArray
+from estimators.gnss.snapshot.linearise import factorise, fill_normal, iterate, linearise
+from estimators.gnss.snapshot.parity import fill_inverse, fill_parity
+from estimators.gnss.table import EpochTable
+from estimators.kernels import kernel, ro
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """Linearised epoch about a solution; all in the units that whitening leaves.
+
+    Attributes
+    ----------
+    table : EpochTable
+        Of one epoch.
+    state : ndarray, shape (p,)
+        Position (Cartesian) and clocks in metres.
+    A : ndarray, shape (n, p)
+        Whitened design.
+    z : ndarray, shape (n,)
+        Whitened residuals.
+    N : ndarray, shape (p, p)
+        (A'A)^-1 over the rows used: the covariance of the state at unit noise scale.
+    gain : ndarray, shape (p, n)
+        N A'.
+    S : ndarray, shape (n, n)
+        I - A N A'.
+    used : ndarray of bool, shape (n,)
+        Rows of the solution.
+    """
+
+    table: EpochTable
+    state: FloatArray
+    A: FloatArray
+    z: FloatArray
+    N: FloatArray
+    gain: FloatArray
+    S: FloatArray
+    used: BoolArray
+
+    @property
+    def freedom(self) -> int:
+        """Redundant satellites of the solution."""
+        return int(self.used.sum()) - self.state.size
+
+    @property
+    def squares(self) -> float:
+        """Sum of squared whitened residuals over the rows used."""
+        return float(self.z[self.used] @ self.z[self.used])
+
+
+def solve_problem(table: EpochTable, used: BoolArray | None = None) -> Problem | None:
+    """Least squares over the used satellites of an epoch, from the Earth's centre.
+
+    Parameters
+    ----------
+    table : EpochTable
+        Of one epoch.
+    used : ndarray of bool, shape (n,), optional
+        Default all.
+
+    Returns
+    -------
+    Problem or None
+        None where the satellites do not determine the position and the clocks.
+    """
+    n, p = table.pseudoranges_m.size, 3 + len(table.letters[0])
+    rows = np.ones(n, dtype=np.bool_) if used is None else np.ascontiguousarray(used)
+    if int(rows.sum()) < p:
+        return None
+    state = np.zeros(p)
+    A, z = np.empty((n, p)), np.empty(n)
+    N, gain, S = np.empty((p, p)), np.empty((p, n)), np.empty((n, n))
+    solved = _solve(
+        table.satellites_m,
+        table.pseudoranges_m,
+        table.sigma_m,
+        table.clock,
+        table.rotated,
+        rows,
+        state,
+        A,
+        z,
+        N,
+        gain,
+        S,
+    )
+    return Problem(table, state, A, z, N, gain, S, rows) if solved else None
+
+
+def problem_at(table: EpochTable, state: FloatArray, used: BoolArray) -> Problem | None:
+    """Linearise about a state that is a solution already.
+
+    Parameters
+    ----------
+    table : EpochTable
+        Of one epoch.
+    state : ndarray, shape (p,)
+    used : ndarray of bool, shape (n,)
+    """
+    n, p = table.pseudoranges_m.size, state.size
+    A, z = np.empty((n, p)), np.empty(n)
+    N, gain, S = np.empty((p, p)), np.empty((p, n)), np.empty((n, n))
+    solved = _fill_at(
+        table.satellites_m,
+        table.pseudoranges_m,
+        table.sigma_m,
+        table.clock,
+        table.rotated,
+        used,
+        state,
+        A,
+        z,
+        N,
+        gain,
+        S,
+    )
+    return Problem(table, state, A, z, N, gain, S, used) if solved else None
+
+
+_TYPES = (
+    ro(types.float64, 2),
+    ro(types.float64),
+    ro(types.float64),
+    ro(types.int64),
+    types.boolean,
+    ro(types.boolean),
+)
+_OUT = (
+    types.float64[::1],
+    types.float64[:, ::1],
+    types.float64[::1],
+    types.float64[:, ::1],
+    types.float64[:, ::1],
+    types.float64[:, ::1],
+)
+
+
+@kernel(types.boolean(*_TYPES, *_OUT))
+def _solve(
+    satellites: FloatArray,
+    ranges: FloatArray,
+    sigma: FloatArray,
+    clock: IntArray,
+    rotated: bool,
+    used: BoolArray,
+    state: FloatArray,
+    A: FloatArray,
+    z: FloatArray,
+    N: FloatArray,
+    gain: FloatArray,
+    S: FloatArray,
+) -> bool:
+    p = state.size
+    factor, step = np.empty((p, p)), np.empty(p)
+    if not iterate(satellites, ranges, sigma, clock, rotated, used, state, A, z, factor, step):
+        return False
+    fill_inverse(factor, N)
+    fill_parity(A, N, gain, S)
+    return True
+
+
+@kernel(types.boolean(*_TYPES, *_OUT))
+def _fill_at(
+    satellites: FloatArray,
+    ranges: FloatArray,
+    sigma: FloatArray,
+    clock: IntArray,
+    rotated: bool,
+    used: BoolArray,
+    state: FloatArray,
+    A: FloatArray,
+    z: FloatArray,
+    N: FloatArray,
+    gain: FloatArray,
+    S: FloatArray,
+) -> bool:
+    p = state.size
+    factor, step = np.empty((p, p)), np.empty(p)
+    linearise(satellites, ranges, sigma, clock, rotated, state, A, z)
+    fill_normal(A, z, used, factor, step)
+    if not factorise(factor):
+        return False
+    fill_inverse(factor, N)
+    fill_parity(A, N, gain, S)
+    return True

@@ -1,0 +1,1 @@
+"""States that follow one another in time: smoothing along a chain."""
