@@ -13,7 +13,7 @@ from dataclasses import fields
 
 from pydantic import SecretStr
 
-from estimators import RobustOptions, methods, models
+from estimators import PositionOptions, RobustOptions, methods, models, position_methods
 from estimators.notices import NOTICE_MEANINGS
 from service.errors import ProblemType
 from service.settings import Settings
@@ -53,6 +53,21 @@ def _notices() -> str:
 def _options() -> str:
     meanings = _attributes(RobustOptions)
     rows = [(f"`{item.name}`", f"`{item.default}`", meanings[item.name][0]) for item in fields(RobustOptions)]
+    return _markdown(("option", "default", "meaning"), rows)
+
+
+def _position_methods() -> str:
+    return _markdown(
+        ("method", "what it does", "when to use it", "source"),
+        [(f"`{row.name}`", row.summary, row.when_to_use, row.source) for row in position_methods().values()],
+    )
+
+
+def _position_options() -> str:
+    meanings = _attributes(PositionOptions)
+    rows = [
+        (f"`{item.name}`", f"`{item.default}`", meanings[item.name][0]) for item in fields(PositionOptions)
+    ]
     return _markdown(("option", "default", "meaning"), rows)
 
 
@@ -134,6 +149,8 @@ TABLES: dict[str, Callable[[], str]] = {
     "models": _models,
     "notices": _notices,
     "options": _options,
+    "position-methods": _position_methods,
+    "position-options": _position_options,
     "problems": _problems,
     "settings": _settings,
 }

@@ -39,6 +39,8 @@ SOLVED, TOO_FEW, UNDETERMINED, UNSETTLED = 0, 1, 2, 3
 _ROUNDS = 3
 _FAR_M = 1000.0
 """Beyond this the curvature of the ranges, d^2 / (2 rho), passes 2 cm; the posterior is computed again."""
+_INDIFFERENT = 1e-3
+"""Of sets whose positions are far off with probabilities this close to the least, the likeliest is taken."""
 _UNSUPPORTED = 0.3
 """Share of the 99.9 % limit of chi square that an excluded satellite must at least explain."""
 
@@ -99,6 +101,7 @@ def _answer(
     places, shares = np.empty(HEAVY, np.int64), np.empty(HEAVY)
     place, height = np.empty((HEAVY, 3)), np.empty(HEAVY)
     variance, vertical, distance, rise = np.empty(HEAVY), np.empty(HEAVY), np.empty(HEAVY), np.empty(HEAVY)
+    risks = np.empty(CANDIDATES)
     nu = 2.0 * shape + freedom
 
     for j in range(p):
@@ -132,10 +135,10 @@ def _answer(
             for h in range(min(heavy, CANDIDATES)):
                 for g in range(heavy):
                     distance[g] = math.hypot(place[h, 0] - place[g, 0], place[h, 1] - place[g, 1])
-                value = tail(alert_m, distance[:heavy], variance[:heavy], nu, shares[:heavy])
-                if value < least:
-                    least = value
-                    best = h
+                risks[h] = tail(alert_m, distance[:heavy], variance[:heavy], nu, shares[:heavy])
+                least = min(least, risks[h])
+            while risks[best] > least + _INDIFFERENT:
+                best += 1
             chosen = members[places[best]]
             size = sizes[places[best]]
             if squares >= limits[min(freedom, limits.size - 1)] and size > 0:
