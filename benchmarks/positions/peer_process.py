@@ -26,7 +26,7 @@ def by_sidereon(request: Mapping[str, Any]) -> tuple[list[Found], float]:
 
     broadcast = sidereon.load_rinex_nav(request["navigation"].encode())
     observations = sidereon.load_rinex_obs(request["observations"].encode())
-    ionosphere = broadcast.iono_corrections.gps
+    ionosphere: Any = broadcast.iono_corrections.gps
     found_inputs = sidereon.spp_inputs_from_rinex_obs(broadcast, observations)
     inputs = {round(_time_of_week(given)): given for given in found_inputs}
     answers, seconds = [], 0.0
@@ -39,7 +39,7 @@ def by_sidereon(request: Mapping[str, Any]) -> tuple[list[Found], float]:
             given.day_of_year,
             [0.0, 0.0, 0.0, 0.0],
             corrections=sidereon.SppCorrections(ionosphere=True, troposphere=True),
-            klobuchar=sidereon.SppKlobucharCoeffs(ionosphere.alpha, ionosphere.beta),
+            klobuchar=sidereon.SppKlobucharCoeffs(list(ionosphere.alpha), list(ionosphere.beta)),
             glonass_channels=dict(broadcast.glonass_frequency_channels),
         )
         weights = {n: 1.0 / s**2 for n, s in zip(epoch["name"], epoch["sigma_m"], strict=True)}
