@@ -83,6 +83,18 @@ NOTICE_MEANINGS: Mapping[NoticeCode, str] = {
 }
 
 
+POSITION_NOTICES = frozenset(
+    {
+        NoticeCode.ambiguous_faults,
+        NoticeCode.unchecked_position,
+        NoticeCode.untestable_satellites,
+        NoticeCode.inconsistent_ranges,
+        NoticeCode.satellites_below_mask,
+    }
+)
+"""Notices that only positions give."""
+
+
 @dataclass(frozen=True, slots=True)
 class Notice:
     """A typed warning in an answer.

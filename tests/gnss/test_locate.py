@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -10,6 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from estimators import Fix, InputError, NoFit, NoFitReason, NoticeCode, PositionOptions, locate
+from estimators.gnss.presentation.words import ADVICE
+from estimators.notices import POSITION_NOTICES
 from tests.gnss.skies import Sky, make_sky
 
 SEEDS = st.integers(0, 10_000)
@@ -204,3 +207,28 @@ def test_the_answer_is_json_geojson_frame_and_words() -> None:
 def test_the_same_epoch_gives_the_same_bytes() -> None:
     sky = make_sky(12, 9).with_faults({3: 70.0})
     assert json.dumps(fixed(sky).to_dict()) == json.dumps(fixed(sky).to_dict())
+
+
+def _codes(**change: object) -> set[NoticeCode]:
+    sky = make_sky(9, 2, mask_deg=5.0)
+    arguments: dict[str, object] = {"sigma_m": sky.sigma_m} | change
+    found = locate(sky.satellites_m, sky.ranges_m, **arguments)  # type: ignore[arg-type]
+    assert isinstance(found, Fix)
+    return {item.code for item in found.notices}
+
+
+POSITION_CASES: dict[NoticeCode, Callable[[], set[NoticeCode]]] = {
+    NoticeCode.ambiguous_faults: lambda: {
+        item.code for item in fixed(make_sky(5, 6).with_faults({0: 500.0})).notices
+    },
+    NoticeCode.unchecked_position: lambda: {item.code for item in fixed(make_sky(4, 1)).notices},
+    NoticeCode.untestable_satellites: lambda: _codes(system=["G"] * 8 + ["E"]),
+    NoticeCode.inconsistent_ranges: lambda: _codes(sigma_m=0.01, method="ols"),
+    NoticeCode.satellites_below_mask: lambda: _codes(options=PositionOptions(elevation_mask_deg=35.0)),
+}
+
+
+@pytest.mark.parametrize("code", sorted(POSITION_NOTICES))
+def test_every_notice_of_positions_occurs_and_says_what_to_do(code: NoticeCode) -> None:
+    assert code in POSITION_CASES[code]()
+    assert ADVICE[code].endswith(".")

@@ -26,6 +26,7 @@ ADVICE: Mapping[NoticeCode, str] = MappingProxyType(
         NoticeCode.untestable_satellites: (
             "Add a second satellite of their system, or leave the system out."
         ),
+        NoticeCode.satellites_below_mask: "Lower options.elevation_mask_deg to use them.",
         NoticeCode.inconsistent_ranges: "Look at the sigmas, and at faults that the alert limit tolerates.",
     }
 )
