@@ -60,6 +60,9 @@ def make_fix(ended: Ended) -> Fix:
     if ended.verdict is not None and ended.verdict.integrity is not None:
         integrity = ended.verdict.integrity
     far = float(solved.far_probability[0])
+    if used.size == problem.state.size:
+        # Nothing checks the position: it is as wrong as often as any of the satellites is faulty.
+        far = max(far, 1.0 - (1.0 - options.fault_prior) ** used.size)
     test = _global_test(squares, freedom, options.false_alarm)
     rival = None
     if solved.rival_probability[0] > 0.0:

@@ -114,6 +114,7 @@ def test_as_many_satellites_as_unknowns_are_answered_with_a_warning() -> None:
     fix = fixed(make_sky(4, 1, noise=0.0))
     assert NoticeCode.unchecked_position in [item.code for item in fix.notices]
     assert set(fix.satellites.status) == {"untestable"}
+    assert fix.ambiguous
 
 
 def test_a_fault_that_five_satellites_cannot_place_is_called_ambiguous() -> None:
