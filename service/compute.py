@@ -115,18 +115,23 @@ class Compute:
         running = self._pool.submit(job, patience)
         # The slot is given back when the thread is free, which may be after the caller had their answer.
         running.add_done_callback(lambda _: loop.call_soon_threadsafe(self._admission.leave))
-        return asyncio.wrap_future(running)
+        work = asyncio.wrap_future(running)
+        # Of a job that nobody waits for any more nobody asks how it ended, which asyncio would log.
+        work.add_done_callback(lambda done: done.cancelled() or done.exception())
+        return work
 
     async def _first(self, work: asyncio.Future[T], leaving: asyncio.Future[Any], patience: Patience) -> T:
-        done, _ = await asyncio.wait(
-            {work, leaving}, timeout=patience.left, return_when=asyncio.FIRST_COMPLETED
-        )
+        try:
+            done, _ = await asyncio.wait(
+                {work, leaving}, timeout=patience.left, return_when=asyncio.FIRST_COMPLETED
+            )
+        finally:
+            work.cancel()
         if work in done:
             try:
                 return work.result()
             except Cancelled:
                 raise Problem(ProblemType.deadline_exceeded) from None
-        work.cancel()
         if leaving in done:
             raise ClientDisconnect
         raise Problem(ProblemType.deadline_exceeded)

@@ -105,11 +105,12 @@ def test_a_problem_before_the_first_line_is_answered_with_its_status(client: Tes
 
 
 def test_a_fit_whose_caller_left_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
-    ended = threading.Event()
+    begun, ended = threading.Event(), threading.Event()
 
     def endless(*arguments: Any, **options: Any) -> Any:
         if is_first.acquire(blocking=False):
             return fit_trends(*arguments, **options)
+        begun.set()
         flag = cancel_flag()
         while not flag[0]:
             ended.wait(0.005)
@@ -123,6 +124,7 @@ def test_a_fit_whose_caller_left_is_ended(monkeypatch: pytest.MonkeyPatch) -> No
             "POST", server.url + ENDPOINT, content=as_csv(TABLE), headers=NDJSON, timeout=60
         ) as answer:
             next(answer.iter_lines())
+            assert begun.wait(60)
         assert ended.wait(60)
 
 

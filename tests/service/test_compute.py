@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import threading
 from collections.abc import Callable, Coroutine
 from typing import Any
@@ -149,5 +150,50 @@ def test_the_time_in_the_queue_is_measured() -> None:
         bench, watch = Bench(), Stopwatch()
         await bench.compute.run(lambda _: None, bench.left.wait(), watch)
         assert watch.seconds["queue"] >= 0
+
+    run(test())
+
+
+def test_a_request_that_is_cancelled_while_it_waits_takes_no_slot() -> None:
+    async def test() -> None:
+        bench = Bench()
+        may_end = threading.Event()
+        busy = asyncio.ensure_future(bench.run(lambda _: may_end.wait(30)))
+        await asyncio.sleep(0)
+        waiting = asyncio.ensure_future(bench.run(lambda _: None))
+        while not bench.admission.waiting:
+            await asyncio.sleep(0.001)
+        waiting.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await waiting
+        may_end.set()
+        assert await busy
+        await bench.idle()
+        assert bench.admission.waiting == 0
+
+    run(test())
+
+
+def test_a_job_whose_request_was_cancelled_ends_in_silence() -> None:
+    async def test() -> None:
+        said: list[dict[str, Any]] = []
+        asyncio.get_running_loop().set_exception_handler(lambda _loop, what: said.append(what))
+        bench = Bench()
+        begun = threading.Event()
+
+        def job(patience: Patience) -> None:
+            begun.set()
+            while True:
+                patience.check()
+
+        request = asyncio.ensure_future(bench.run(job))
+        await asyncio.to_thread(begun.wait, 30)
+        request.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await request
+        await bench.idle()
+        del request
+        gc.collect()
+        assert said == []
 
     run(test())
