@@ -44,7 +44,7 @@ class ProblemType(Enum):
         "not-acceptable",
         406,
         "No answer in an accepted format",
-        "The answer comes as JSON, CSV, SVG or PNG; ask for one of these in Accept or with ?format=.",
+        "The schema of the operation lists its formats, JSON among them; ask for one in Accept or ?format=.",
     )
     request_timeout = (
         "request-timeout",
@@ -92,6 +92,12 @@ class ProblemType(Enum):
         "no-fit",
         422,
         "The data do not determine a trend",
+        "The reason says why; points.reason tells what became of every row.",
+    )
+    no_position = (
+        "no-position",
+        422,
+        "The ranges do not determine a position",
         "The reason says why; points.reason tells what became of every row.",
     )
     internal_error = (

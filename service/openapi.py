@@ -18,6 +18,7 @@ from pydantic.json_schema import models_json_schema
 from service.errors import ProblemType
 from service.schemas.batch import BatchRequest
 from service.schemas.options import TrendRequest
+from service.schemas.positions import PositionRequest
 from service.schemas.problems import ProblemAnswer, problem_responses
 from service.security.keys import is_open
 
@@ -48,7 +49,7 @@ def describe(app: FastAPI) -> dict[str, Any]:
     components = document.setdefault("components", {})
     schemas = components.setdefault("schemas", {})
     _, ours = models_json_schema(
-        [(TrendRequest, "validation"), (BatchRequest, "validation"), (ProblemAnswer, "validation")],
+        [(model, "validation") for model in (TrendRequest, BatchRequest, PositionRequest, ProblemAnswer)],
         ref_template="#/components/schemas/{model}",
     )
     for name, schema in ours["$defs"].items():

@@ -1,4 +1,4 @@
-"""The command ``plumbline``: fit a file or many series, serve over HTTP, list methods and models.
+"""The command ``plumbline``: fit a file or many series, locate, serve over HTTP, list methods and models.
 
 Only the signatures are here; each command's work is in a module of its own and is imported when it runs,
 so that ``--help`` answers at once. Exit codes: 0 done, 1 the data determine no trend, 2 bad input.
@@ -238,6 +238,63 @@ def fit_many(
             reach=tuple(reach or ()),
             horizon=horizon,
             points=points,
+        )
+    )
+
+
+@app.command()
+def locate(
+    file: Annotated[
+        str,
+        typer.Argument(
+            metavar="FILE", help="CSV of pseudoranges, RINEX or GnssLogger, told by content; - for stdin."
+        ),
+    ],
+    nav: Annotated[
+        list[Path] | None,
+        typer.Option(metavar="FILE", help="RINEX navigation file, for RINEX and logs; may be repeated."),
+    ] = None,
+    rotated: Annotated[
+        bool | None,
+        typer.Option(
+            "--rotated/--not-rotated",
+            help="CSV: whether satellite positions are turned for the Earth's rotation. Never guessed.",
+        ),
+    ] = None,
+    method: Annotated[str, typer.Option(help="How faults are found.")] = "auto",
+    motion: Annotated[
+        Literal["auto", "static", "moving", "independent"] | None,
+        typer.Option(help="Of many epochs: how the receiver moves. Default: told from the data."),
+    ] = None,
+    time_unit: TimeUnit = None,
+    mask: Annotated[
+        float | None, typer.Option(metavar="DEG", help="Leave out satellites below this elevation.")
+    ] = None,
+    output_format: Annotated[
+        Literal["text", "json", "csv", "geojson", "svg", "png"],
+        typer.Option("--format", help="What to write; svg and png show the sky of one epoch."),
+    ] = "text",
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output", "-o", metavar="OUT", help="Where to. Default: standard output.", dir_okay=False
+        ),
+    ] = None,
+) -> None:
+    """Find positions from pseudoranges, and the satellites that lie."""
+    from service.cli.locating import LocateRequest, run_locate
+
+    run_locate(
+        LocateRequest(
+            file=file,
+            nav=tuple(nav or ()),
+            rotated=rotated,
+            method=method,
+            motion=motion,
+            time_unit=time_unit,
+            mask=mask,
+            output_format=output_format,
+            output=output,
         )
     )
 

@@ -59,26 +59,26 @@ def read_csv(body: bytes, query: TrendQuery) -> tuple[Columns, FitArguments]:
         If the body is not CSV in UTF-8, a column is not there, or a cell cannot be read.
     """
     arguments = read_arguments(query.fit_arguments())
-    header, rows = _read_table(body)
+    header, rows = split_table(body)
     time_cells = _column(header, rows, query.time_column, "time")
     value_cells = _column(header, rows, query.value_column, "value")
     weight: npt.NDArray[np.float64] | None = None
     if query.weight_column is not None or "weight" in header:
-        weight = _floats(_column(header, rows, query.weight_column, "weight"), "weight")
-    time, form = _times(time_cells, "time", arguments.time_unit)
+        weight = read_cells(_column(header, rows, query.weight_column, "weight"), "weight")
+    time, form = read_time_cells(time_cells, "time", arguments.time_unit)
     predict: Times | None = None
     if query.predict:
         asked = [cell for item in query.predict for cell in item.split(",")]
-        predict, asked_form = _times(asked, "predict", arguments.time_unit)
+        predict, asked_form = read_time_cells(asked, "predict", arguments.time_unit)
         if asked_form != form:
             raise invalid_value("predict", "must be written in the same form as the time column")
     names = [name.strip() for item in query.own_columns or () for name in item.split(",")]
     check_names(names, "columns")
-    own = {name: _floats(_column(header, rows, name, "columns"), f"columns.{name}") for name in names}
+    own = {name: read_cells(_column(header, rows, name, "columns"), f"columns.{name}") for name in names}
     horizon: Times | None = None
     if query.horizon is not None:
         horizon = read_horizon(query.horizon, arguments.time_unit, form)
-    return Columns(time, _floats(value_cells, "value"), weight, predict, form, horizon, own), arguments
+    return Columns(time, read_cells(value_cells, "value"), weight, predict, form, horizon, own), arguments
 
 
 def read_horizon(text: str, unit: TimeUnit | None, form: TimeForm) -> Times:
@@ -100,7 +100,7 @@ def read_horizon(text: str, unit: TimeUnit | None, form: TimeForm) -> Times:
     Problem
         If it is no time, or written in another form than those of the series.
     """
-    horizon, asked_form = _times([text], "horizon", unit)
+    horizon, asked_form = read_time_cells([text], "horizon", unit)
     if asked_form != form:
         raise invalid_value("horizon", "must be written in the same form as the time column")
     return horizon
@@ -142,7 +142,8 @@ def _time_cells(columns: Columns) -> list[bytes]:
     return _cells(np.ascontiguousarray(rendered))
 
 
-def _read_table(body: bytes) -> tuple[list[str], list[list[str]]]:
+def split_table(body: bytes) -> tuple[list[str], list[list[str]]]:
+    """Header and rows of a CSV body; a Problem where it is not CSV in UTF-8 or a row has other cells."""
     try:
         text = body.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -176,7 +177,8 @@ def _column(header: list[str], rows: list[list[str]], asked: str | None, role: s
     return [row[place] for row in rows]
 
 
-def _floats(cells: Sequence[str], field: str) -> npt.NDArray[np.float64]:
+def read_cells(cells: Sequence[str], field: str) -> npt.NDArray[np.float64]:
+    """Numbers of a column, NaN where one is missing; a Problem names the row of what is no number."""
     numbers = _plain_floats(cells)
     if numbers is not None:
         return numbers
@@ -214,7 +216,8 @@ def _is_plain(cells: Sequence[str]) -> bool:
     return text.isascii() and "_" not in text
 
 
-def _times(cells: Sequence[str], field: str, unit: TimeUnit | None) -> tuple[Times, TimeForm]:
+def read_time_cells(cells: Sequence[str], field: str, unit: TimeUnit | None) -> tuple[Times, TimeForm]:
+    """Read the times of a column and the form they came in; a Problem names the row of what is no time."""
     first = next((cell for cell in cells if cell.strip().lower() not in MISSING), "")
     if _ISO_START.match(first.strip()):
         if unit is not None:
@@ -225,8 +228,8 @@ def _times(cells: Sequence[str], field: str, unit: TimeUnit | None) -> tuple[Tim
         )
     if unit is None:
         integers = _plain_integers(cells)
-        return (_floats(cells, field) if integers is None else integers), TimeForm("number")
+        return (read_cells(cells, field) if integers is None else integers), TimeForm("number")
     missing = np.array([cell.strip().lower() in MISSING for cell in cells], dtype=np.bool_)
     integers = _plain_integers(["0" if gone else cell for cell, gone in zip(cells, missing, strict=True)])
-    numbers = _floats(cells, field) if integers is None else integers
+    numbers = read_cells(cells, field) if integers is None else integers
     return from_epoch(numbers, unit, field, missing), TimeForm("epoch", unit)

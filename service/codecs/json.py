@@ -57,7 +57,9 @@ _WANTED = dict.fromkeys(("time", "predict", "horizon"), "a number, ISO 8601 text
 _BYTE = re.compile(r"\(byte (\d+)\)")
 _ROW = re.compile(r"\$\[(\d+)\]")
 _NOT_FINITE = re.compile(rb"-?(nan|inf)", re.IGNORECASE)
-_OPEN_COLUMN = re.compile(rb'"(time|value|weight|predict|lat|lon)"\s*:\s*\[[^\]]*\Z')
+_OPEN_COLUMN = re.compile(
+    rb'"(time|value|weight|predict|lat|lon|[xyz]_m|pseudorange_m|sigma_m|cn0_dbhz)"\s*:\s*\[[^\]]*\Z'
+)
 
 
 def read_json(body: bytes, query: TrendQuery) -> tuple[Columns, FitArguments]:

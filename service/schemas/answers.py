@@ -16,6 +16,7 @@ WireTime = int | float | str | None
 SearchKind = Literal["sampled", "exhaustive", "certified", "closed"]
 RowReason = Literal["ok", "outlier", "missing", "invalid", "duplicate", "zero_weight", "earlier_regime"]
 NoFitReason = Literal["no_data", "too_few_points", "constant_time", "no_consensus", "too_large"]
+NoPositionReason = Literal["too_few_satellites", "undetermined_geometry", "implausible_position"]
 
 
 class Answer(BaseModel):

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel, ConfigDict, Field
 
 from service.errors import PROBLEM_MEDIA_TYPE, ProblemType
-from service.schemas.answers import NoFitReason, NoticeAnswer, RowReason
+from service.schemas.answers import NoFitReason, NoPositionReason, NoticeAnswer, RowReason
 
 
 class FieldErrorAnswer(BaseModel):
@@ -43,9 +43,16 @@ class ProblemAnswer(BaseModel):
     errors: list[FieldErrorAnswer] | None = None
     accepted: Annotated[list[str] | None, Field(description="406, 415: media types there are.")] = None
     limit: Annotated[int | None, Field(description="413: bytes or rows that are taken.")] = None
-    reason: Annotated[NoFitReason | None, Field(description="no-fit: why there is no trend.")] = None
-    points: Annotated[NoFitPoints | None, Field(description="no-fit: what became of every row.")] = None
-    notices: Annotated[list[NoticeAnswer] | None, Field(description="no-fit: typed warnings.")] = None
+    reason: Annotated[
+        NoFitReason | NoPositionReason | None,
+        Field(description="no-fit, no-position: why there is no trend, or no position."),
+    ] = None
+    points: Annotated[
+        NoFitPoints | None, Field(description="no-fit, no-position: what became of every row.")
+    ] = None
+    notices: Annotated[
+        list[NoticeAnswer] | None, Field(description="no-fit, no-position: typed warnings.")
+    ] = None
 
 
 def problem_responses(*kinds: ProblemType) -> dict[int | str, dict[str, Any]]:

@@ -1,0 +1,173 @@
+"""``POST /v1/positions``: pseudoranges in, the position out, and which satellites lie."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Request, Response
+
+import estimators
+from estimators.consensus.cancellation import cancelled_by
+from service.codecs.negotiation import media_type_of
+from service.codecs.positions.columns import check_ranges
+from service.codecs.positions.read import RANGE_READERS, ReadRanges
+from service.codecs.positions.write import (
+    POSITION_WRITERS,
+    PositionWriter,
+    choose_position_writer,
+    refuse_picture_of_many,
+)
+from service.compute import Compute, Patience
+from service.errors import Problem, ProblemType
+from service.observability.metrics import Metrics
+from service.observability.timing import Stopwatch
+from service.positions import locate_columns
+from service.schemas.answers import MethodAnswer
+from service.schemas.positions import PositionAnswer, PositionMethodsAnswer, PositionQuery, PositionsAnswer
+from service.schemas.problems import problem_responses
+from service.security.headers import PICTURE_POLICY
+from service.settings import Settings
+
+router = APIRouter(prefix="/v1", tags=["positions"])
+
+BODY_SCHEMAS: dict[str, dict[str, Any]] = {
+    "application/json": {"schema": {"$ref": "#/components/schemas/PositionRequest"}},
+    "text/csv": {
+        "schema": {
+            "type": "string",
+            "description": "A header and one line per satellite and epoch; columns `x_m`, `y_m`, `z_m`, "
+            "`pseudorange_m` and optionally `sigma_m`, `cn0_dbhz`, `system`, `satellite`, `time`. Columns of "
+            "other names are left alone. The arguments come in the query, `rotated` among them.",
+        },
+    },
+}
+ANSWER_SCHEMAS: dict[str, dict[str, Any]] = {
+    writer.media_type: {"schema": {"type": "object" if writer.name == "geojson" else "string"}}
+    for writer in POSITION_WRITERS
+    if writer.name != "json"
+}
+
+RESPONSES: dict[int | str, dict[str, Any]] = {
+    200: {
+        "model": PositionAnswer | PositionsAnswer,
+        "description": "The position, or with `time` the positions, in the format asked for by `format` or "
+        "`Accept`.",
+        "content": ANSWER_SCHEMAS,
+        "headers": {
+            "Server-Timing": {
+                "description": "Milliseconds of the phases parse, queue, fit and encode.",
+                "schema": {"type": "string"},
+            }
+        },
+    },
+    **problem_responses(
+        ProblemType.malformed_body,
+        ProblemType.empty_body,
+        ProblemType.not_acceptable,
+        ProblemType.request_timeout,
+        ProblemType.body_too_large,
+        ProblemType.too_many_points,
+        ProblemType.unsupported_media_type,
+        ProblemType.invalid_value,
+        ProblemType.unknown_field,
+        ProblemType.no_position,
+        ProblemType.busy,
+        ProblemType.not_ready,
+        ProblemType.deadline_exceeded,
+    ),
+}
+
+
+@router.post(
+    "/positions",
+    summary="Find a position and the satellites that lie",
+    operation_id="locate",
+    response_class=Response,
+    response_model=None,
+    responses=RESPONSES,
+    openapi_extra={"requestBody": {"required": True, "content": BODY_SCHEMAS}},
+)
+async def find(request: Request, query: Annotated[PositionQuery, Query()]) -> Response:
+    """Find the position of a receiver from pseudoranges, with faulty satellites left out.
+
+    Without `time` all rows are one epoch; with it, rows of equal time are an epoch, and epochs are solved
+    together. A position that is `ambiguous` should not be used alone.
+    """
+    headers = request.headers
+    writer = choose_position_writer(headers.get("accept"), query.format)
+    media_type = media_type_of(
+        headers.get("content-type"), headers.get("content-encoding"), tuple(RANGE_READERS)
+    )
+    body = await request.body()
+    if not body or body.isspace():
+        raise Problem(ProblemType.empty_body)
+    compute: Compute = request.app.state.compute
+    settings: Settings = request.app.state.settings
+    metrics: Metrics = request.app.state.metrics
+    watch = Stopwatch()
+    await request.app.state.warmth.wait(settings.queue_seconds)
+
+    def job(patience: Patience) -> tuple[bytes, int]:
+        return answer(body, RANGE_READERS[media_type], writer, query, settings.max_points, watch, patience)
+
+    content, rows = await compute.run(job, request.receive(), watch)
+    metrics.count_fit(rows, watch.seconds)
+    request.state.points = rows
+    answer_headers = {"Server-Timing": watch.server_timing(), "Vary": "Accept"}
+    if writer.name == "svg":
+        answer_headers["Content-Security-Policy"] = PICTURE_POLICY
+    return Response(content, headers=answer_headers, media_type=writer.content_type)
+
+
+def answer(
+    body: bytes,
+    reader: ReadRanges,
+    writer: PositionWriter,
+    query: PositionQuery,
+    max_points: int,
+    watch: Stopwatch,
+    patience: Patience,
+) -> tuple[bytes, int]:
+    """Everything between a body and its answer; runs in a thread.
+
+    Returns
+    -------
+    tuple of (bytes, int)
+        The answer, and the number of rows.
+
+    Raises
+    ------
+    Problem
+        If the body cannot be read or its ranges give no position.
+    Cancelled
+        If nobody waits any more.
+    """
+    with watch.phase("parse"):
+        columns, arguments = reader(body, query)
+        check_ranges(columns, arguments, max_points)
+        refuse_picture_of_many(writer, many=columns.time is not None)
+    patience.check()
+    with watch.phase("fit"), cancelled_by(patience.flag):
+        located = locate_columns(columns, arguments, lambda _done, _total: patience.check())
+    patience.check()
+    with watch.phase("encode"):
+        return writer.write(located, query), columns.rows
+
+
+@router.get(
+    "/position-methods", summary="List the methods of positions", operation_id="list_position_methods"
+)
+async def list_position_methods() -> PositionMethodsAnswer:
+    """Every method of fault exclusion: what it does, when to use it, where it comes from."""
+    rows = [
+        MethodAnswer(
+            name=row.name,
+            title=row.title,
+            summary=row.summary,
+            when_to_use=row.when_to_use,
+            source=row.source,
+            robust=row.robust,
+        )
+        for row in estimators.position_methods().values()
+    ]
+    return PositionMethodsAnswer(methods=rows)

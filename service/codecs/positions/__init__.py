@@ -1,0 +1,1 @@
+"""Pseudoranges in, positions out: the formats of ``POST /v1/positions``."""
