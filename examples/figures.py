@@ -1,19 +1,19 @@
 """The pictures of the documentation: ``make figures`` draws them.
 
-They are what ``trend.plot()`` draws of ``examples/disk_usage.csv``, and of the weekly carbon dioxide at Mauna
-Loa that statsmodels brings along; nothing is retouched.
+They are what ``plot()`` draws of ``examples/disk_usage.csv``, of the weekly carbon dioxide at Mauna Loa that
+statsmodels brings along, and of ``examples/pseudoranges.csv``; nothing is retouched.
 """
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import pandas as pd
 from statsmodels.datasets import co2
 
-from estimators import Trend, fit_trend
+from estimators import Fix, Trend, fit_trend, locate
 from estimators.adapters.plotting import Theme, render
 
 if TYPE_CHECKING:
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 IMAGES = Path(__file__).resolve().parents[1] / "docs" / "images"
 THEMES: dict[str, Theme] = {"": "light", "_dark": "dark"}
+Answer = TypeVar("Answer", Trend, Fix)
 
 
 def fit_disk() -> Trend:
@@ -48,22 +49,43 @@ def fit_carbon_dioxide() -> Trend:
     return _found(fit_trend(weekly, seasonal="auto", predict=ahead))
 
 
-def _found(answer: Trend | NoFit) -> Trend:
-    if isinstance(answer, Trend):
+def locate_receiver() -> Fix:
+    """Locate the receiver between tall buildings.
+
+    Raises
+    ------
+    ValueError
+        If there is no position.
+    """
+    ranges = pd.read_csv(Path(__file__).with_name("pseudoranges.csv"))
+    return _found(
+        locate(
+            ranges[["x_m", "y_m", "z_m"]].to_numpy(),
+            ranges["pseudorange_m"].to_numpy(),
+            system=ranges["system"].to_list(),
+            satellite=ranges["satellite"].to_list(),
+        )
+    )
+
+
+def _found(answer: Answer | NoFit) -> Answer:
+    if isinstance(answer, Trend | Fix):
         return answer
     raise ValueError(answer.summary())
 
 
 def draw(directory: Path) -> list[Path]:
     """Write every picture into a directory; their paths."""
+    disk, carbon, sky = fit_disk(), fit_carbon_dioxide(), locate_receiver()
     paths = []
-    for name, trend, label in (
-        ("disk_usage", fit_disk(), "GB used"),
-        ("carbon_dioxide", fit_carbon_dioxide(), "ppm"),
-    ):
-        for suffix, theme in THEMES.items():
+    for suffix, theme in THEMES.items():
+        figures = {
+            "disk_usage": disk.plot(width_px=800, height_px=420, theme=theme, value_label="GB used"),
+            "carbon_dioxide": carbon.plot(width_px=800, height_px=420, theme=theme, value_label="ppm"),
+            "sky": sky.plot(width_px=480, height_px=480, theme=theme),
+        }
+        for name, figure in figures.items():
             path = directory / f"{name}{suffix}.svg"
-            figure = trend.plot(width_px=800, height_px=420, theme=theme, value_label=label)
             path.write_bytes(render(figure, "svg"))
             paths.append(path)
     return paths

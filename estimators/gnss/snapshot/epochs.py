@@ -103,6 +103,7 @@ def _answer(
     variance, vertical, distance, rise = np.empty(HEAVY), np.empty(HEAVY), np.empty(HEAVY), np.empty(HEAVY)
     risks = np.empty(CANDIDATES)
     nu = 2.0 * shape + freedom
+    order = np.argsort(ranges, kind="mergesort")
 
     for j in range(p):
         state[j] = 0.0
@@ -116,7 +117,11 @@ def _answer(
         fill_parity(A, N, gain, S)
         squares = _project(S, gain, z, left, centre)
         fill_enu_axes(state[0], state[1], state[2], axes)
-        found = weigh_fault_sets(S, left, sigma, freedom, fault_prior, shape, scale, members, sizes, weights)
+        suspicious = squares >= limits[min(freedom, limits.size - 1)]
+        found = weigh_fault_sets(
+            A, S, left, sigma, clock, order, freedom, suspicious, fault_prior, shape, scale,
+            members, sizes, weights,
+        )  # fmt: skip
         heavy = heaviest(weights, found, places, shares)
         fault_probabilities(members, sizes, weights, found, probability)
         best, least, unit = 0, math.inf, 0.0
@@ -141,7 +146,7 @@ def _answer(
                 best += 1
             chosen = members[places[best]]
             size = sizes[places[best]]
-            if squares >= limits[min(freedom, limits.size - 1)] and size > 0:
+            if suspicious and size > 0:
                 explained = exclude(S, left, gain, chosen, size, shift, spread)
                 unit = (2.0 * scale + max(0.0, squares - explained)) / nu
                 count = smallest_subset(

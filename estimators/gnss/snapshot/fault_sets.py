@@ -15,7 +15,7 @@ exponential into the power of a Student density: sigmas that are stated too larg
 confidence of an answer, and hardly the answer.
 
 Sets are enumerated by depth-first search, each extending the Cholesky factor of its parent by one row; where
-there are too many, larger sets are found by a beam of the best ones.
+there are too many, larger sets are found by a beam of the best ones, and by consensus.
 """
 
 from __future__ import annotations
@@ -23,14 +23,13 @@ from __future__ import annotations
 import numpy as np
 
 from estimators.arrays import FloatArray, IntArray
+from estimators.gnss.snapshot.consensus_sets import HOPELESS, MOST_PROPOSED, propose_sets
 from estimators.gnss.snapshot.fault_weight import BIASES_M, LARGEST_SET, extend, fill_volume, log_weight
 from estimators.kernels import device
 
 BEAM = 32
 MOST_ENUMERATED = 2000
-CAPACITY = MOST_ENUMERATED + LARGEST_SET * BEAM + 1
-_HOPELESS = 12.0
-"""A beam whose best set is exp(-12) times as likely as the best of all ends."""
+CAPACITY = MOST_ENUMERATED + LARGEST_SET * BEAM + 1 + MOST_PROPOSED
 
 
 @device
@@ -56,10 +55,14 @@ def is_exhaustive(n: int, freedom: int) -> bool:
 
 @device
 def weigh_fault_sets(
+    A: FloatArray,
     S: FloatArray,
     z: FloatArray,
     sigma: FloatArray,
+    clock: IntArray,
+    order: IntArray,
     freedom: int,
+    suspicious: bool,
     fault_prior: float,
     shape: float,
     scale: float,
@@ -71,10 +74,17 @@ def weigh_fault_sets(
 
     Parameters
     ----------
-    S, z, sigma : ndarray
-        Parity matrix and whitened residuals of the solution by all satellites; noise in metres.
+    A, S, z, sigma : ndarray
+        Whitened design, parity matrix and whitened residuals of the solution by all satellites; noise in
+        metres.
+    clock : ndarray of int64, shape (n,)
+        Receiver clock of each satellite.
+    order : ndarray of int64, shape (n,)
+        Satellites in an order that does not hang on how they were given.
     freedom : int
         n - p.
+    suspicious : bool
+        Whether the residuals are too large for noise; otherwise large sets are not sampled.
     fault_prior, shape, scale : float
         Prior probability of a fault; inverse-gamma prior of the squared noise scale.
     members : ndarray of int64, shape (CAPACITY, LARGEST_SET)
@@ -139,6 +149,11 @@ def weigh_fault_sets(
             S, z, ridge, sigma, squares, freedom, fault_prior, shape, scale, enumerated, most, best,
             members, sizes, weights, found, factor, solved, explained, determinant,
         )  # fmt: skip
+        if suspicious:
+            found = propose_sets(
+                A, S, z, ridge, sigma, clock, order, squares, fault_prior, shape, scale, enumerated, most,
+                members, sizes, weights, found,
+            )  # fmt: skip
     return found
 
 
@@ -215,7 +230,7 @@ def _beam(
                 weights[found] = trial[place]
                 found += 1
         parents = np.arange(first, found)
-        if weights[first] < best - _HOPELESS:
+        if weights[first] < best - HOPELESS:
             break
         best = max(best, weights[first])
     return found
