@@ -74,7 +74,7 @@ class ProblemType(Enum):
         "unsupported-media-type",
         415,
         "The media type of the body is not supported",
-        "Send application/json or text/csv in UTF-8, not compressed.",
+        "Send one of the media types that the detail lists, text in UTF-8, not compressed.",
     )
     invalid_value = (
         "invalid-value",
@@ -105,6 +105,12 @@ class ProblemType(Enum):
         500,
         "The service failed",
         "This is a fault of the service. Report the request id to its operator.",
+    )
+    not_installed = (
+        "not-installed",
+        501,
+        "The service lacks what reads this",
+        "An operator can install the extra that the detail names.",
     )
     busy = (
         "busy",

@@ -13,10 +13,12 @@ from typing import Any
 
 from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
+from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
 from service.errors import ProblemType
 from service.schemas.batch import BatchRequest
+from service.schemas.fixes import FeatureAnswer, FeatureCollectionAnswer
 from service.schemas.options import TrendRequest
 from service.schemas.positions import PositionRequest
 from service.schemas.problems import ProblemAnswer, problem_responses
@@ -27,6 +29,16 @@ API_VERSION = "1.0.0"
 DESCRIPTION = (
     "Robust trends from contaminated measurements: a model, a label per measurement and honest uncertainty. "
     "Every error is an RFC 9457 problem."
+)
+
+#: Bodies that codecs read and write past the framework.
+DESCRIBED: tuple[type[BaseModel], ...] = (
+    TrendRequest,
+    BatchRequest,
+    PositionRequest,
+    FeatureAnswer,
+    FeatureCollectionAnswer,
+    ProblemAnswer,
 )
 
 #: What any operation can answer besides its own problems.
@@ -49,7 +61,7 @@ def describe(app: FastAPI) -> dict[str, Any]:
     components = document.setdefault("components", {})
     schemas = components.setdefault("schemas", {})
     _, ours = models_json_schema(
-        [(model, "validation") for model in (TrendRequest, BatchRequest, PositionRequest, ProblemAnswer)],
+        [(model, "validation") for model in DESCRIBED],
         ref_template="#/components/schemas/{model}",
     )
     for name, schema in ours["$defs"].items():

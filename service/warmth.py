@@ -1,9 +1,10 @@
 """The moments before the first request: which compiled code is there.
 
 The usual fit needs a few of the kernels, so a start loads these first. If they came from the cache the
-service is ready: the others are read behind it, one by one, and a request that needs one earlier reads it
-itself, which takes milliseconds. If anything had to be compiled the cache was made by another version or for
-another processor, and the service is ready only once everything is loaded: no fit waits for a compiler.
+service is ready: the others are read behind it, those of positions first and then one by one, and a request
+that needs one earlier reads it itself, which takes milliseconds. If anything had to be compiled the cache was
+made by another version or for another processor, and the service is ready only once everything is loaded: no
+fit waits for a compiler.
 """
 
 from __future__ import annotations
@@ -13,12 +14,14 @@ import importlib
 import threading
 import time
 from collections.abc import Callable
+from importlib.util import find_spec
 
 import numpy as np
 from numba.core.event import Event, Listener, install_listener
 from structlog.typing import FilteringBoundLogger
 
-from estimators import fit_trend, kernels
+from estimators import Epoch, fit_trend, kernels, locate, locate_series
+from estimators.geodesy.ellipsoid import to_cartesian
 from service.errors import Problem, ProblemType
 
 #: How often a request that came too early looks whether the service is ready.
@@ -30,8 +33,17 @@ BREATH_SECONDS = 0.005
 #: A kernel comes from the cache in less; the log is not written to by a thread that outlives its app.
 STOP_SECONDS = 1.0
 
-#: What the first batch and the first crossing of a curve import; it is there before they come.
-LATE_MODULES = ("service.batches", "service.codecs.batch.parquet", "scipy.optimize")
+#: What the first batch, the first crossing of a curve and the first file of a receiver import; it is there
+#: before they come.
+LATE_MODULES = (
+    "service.batches",
+    "service.codecs.batch.parquet",
+    "scipy.optimize",
+    "service.codecs.positions.tables",
+)
+
+#: Where the extra [rinex] is installed.
+READER_OF_RINEX, NEEDED_BY_IT = "estimators.adapters.rinex", "sidereon"
 
 
 class Warmth:
@@ -102,10 +114,13 @@ class Warmth:
             self.loaded, self.total = done, total
             if done == 1 and not load_usual(lambda: self._log.info("compiling")):
                 self._get_ready(start)
+                load_positions()
             if self._stop.wait(BREATH_SECONDS if self.is_ready else 0.0):
                 return
         for module in LATE_MODULES:
             importlib.import_module(module)
+        if find_spec(NEEDED_BY_IT) is not None:
+            importlib.import_module(READER_OF_RINEX)
         if not self.is_ready:
             self._get_ready(start)
 
@@ -138,6 +153,19 @@ def load_usual(compiling: Callable[[], object]) -> bool:
             values[size // 2] += 100.0
             fit_trend(times, values)
     return watch.met
+
+
+def load_positions() -> None:
+    """Load what the usual position and a short series need."""
+    here = to_cartesian(np.array([52.5, 13.4, 80.0]))
+    sky = [[60, 10], [20, -30], [48, 40], [75, 100], [30, 60], [52, -10], [40, 13]]
+    satellites = to_cartesian(np.array([[lat, lon, 20.2e6] for lat, lon in sky]))
+    ranges = np.linalg.norm(satellites - here, axis=1)
+    ranges[3] += 100.0
+    locate(satellites, ranges)
+    epochs = [Epoch(float(k), satellites, ranges) for k in range(3)]
+    for motion in ("static", "moving"):
+        locate_series(epochs, motion=motion)
 
 
 class _Compilations(Listener):

@@ -8,7 +8,7 @@ count that have their time of week or, of GLONASS, of day.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,6 +48,7 @@ _UNSURE_NS = 500.0
 _UNSURE_CLOCK_NS = 1e7
 _RANGES_M = (1e7, 1e8)
 _LATEST_NS = 1 << 62
+_LINES_PER_CHECK = 4096
 _NEEDED = (
     "TimeNanos",
     "FullBiasNanos",
@@ -81,6 +82,7 @@ def read_gnss_logger(
     weights: Weights = "strength",
     ionosphere: Ionosphere = "auto",
     most_bytes: int = MOST_BYTES,
+    check: Callable[[], object] | None = None,
 ) -> ObservedEpochs:
     """Read a phone's raw measurements, and correct them by broadcast messages.
 
@@ -99,7 +101,9 @@ def read_gnss_logger(
     ionosphere : {"auto", "broadcast", "none"}
         As for :func:`estimators.adapters.rinex.read_rinex`; phones' second carriers are not used.
     most_bytes : int
-        Unpacked size above which the log is refused.
+        Unpacked size above which the log, or the navigation files together, are refused.
+    check : callable, optional
+        Called now and then while a file is read; what it raises ends the reading.
 
     Returns
     -------
@@ -125,14 +129,14 @@ def read_gnss_logger(
             "ionosphere", "must be auto, broadcast or none: one code per satellite is read of a phone"
         )
     signals = sorted(
-        _signals(read_text(log, FIELD, most_bytes), letters),
+        _signals(read_text(log, FIELD, most_bytes), letters, check),
         key=lambda signal: (signal.clock_ns, signal.name),
     )
     if not signals:
         raise InputError(
             FIELD, "has no measurement with a decoded time of transmission; was the phone under an open sky?"
         )
-    messages = navigation if isinstance(navigation, Navigation) else read_navigation(navigation)
+    messages = navigation if isinstance(navigation, Navigation) else read_navigation(navigation, most_bytes)
     return correct_observations(
         _observations(signals), messages, ionosphere=ionosphere, weights=weights, mask_deg=mask_deg
     )
@@ -165,9 +169,11 @@ def _strengths(signals: list[_Signal]) -> FloatArray:
     return np.where((strengths > 0.0) & (strengths < 80.0), strengths, np.nan)
 
 
-def _signals(text: str, letters: str) -> Iterator[_Signal]:
+def _signals(text: str, letters: str, check: Callable[[], object] | None) -> Iterator[_Signal]:
     place: dict[str, int] | None = None
-    for line in text.split("\n"):
+    for number, line in enumerate(text.split("\n")):
+        if check is not None and number % _LINES_PER_CHECK == 0:
+            check()
         if line.startswith("#"):
             body = line[1:].strip()
             if body.startswith("Raw,"):

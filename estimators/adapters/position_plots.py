@@ -6,7 +6,8 @@ colour; the colours are those of Okabe and Ito (2008). The same answer gives the
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any, Literal
 
 import numpy as np
@@ -53,10 +54,8 @@ def sky_figure(
     InputError
         If the size or the theme cannot be used.
     """
-    palette = _palette(theme, width_px, height_px)
     inner = fix.satellites
-    with drawing():
-        figure = _sheet(width_px, height_px, palette)
+    with _canvas(width_px, height_px, theme) as (figure, palette):
         axes: Any = figure.add_subplot(projection="polar")
         axes.set_facecolor(palette.paper)
         axes.set_theta_zero_location("N")
@@ -102,13 +101,10 @@ def residual_figure(
     width_px, height_px, theme, title
         As in :func:`sky_figure`.
     """
-    palette = _palette(theme, width_px, height_px)
     inner = fix.satellites
     rows = [row for row, status in enumerate(inner.status) if status in _MARKS]
-    with drawing():
-        figure = _sheet(width_px, height_px, palette)
-        axes: Any = figure.add_subplot()
-        _dress(axes, palette)
+    with _canvas(width_px, height_px, theme) as (figure, palette):
+        axes = _plane(figure, palette)
         # Linear within a few metres and logarithmic beyond: a fault of a kilometre hides no residual.
         axes.set_yscale("symlog", linthresh=10.0)
         places = {row: place for place, row in enumerate(rows)}
@@ -163,7 +159,6 @@ def stanford_figure(
     InputError
         If the columns disagree or hold no finite pair.
     """
-    palette = _palette(theme, width_px, height_px)
     error, level = np.asarray(error_m, dtype=np.float64), np.asarray(protection_m, dtype=np.float64)
     if error.shape != level.shape or error.ndim != 1:
         raise InputError("protection_m", f"expected one level per error, got {level.shape} for {error.shape}")
@@ -173,10 +168,8 @@ def stanford_figure(
     error, level = error[known], level[known]
     missed = int(np.count_nonzero(error > level))
     limit = 1.1 * max(float(np.max(error)), float(np.quantile(level, 0.99)), alert_m)
-    with drawing():
-        figure = _sheet(width_px, height_px, palette)
-        axes: Any = figure.add_subplot()
-        _dress(axes, palette)
+    with _canvas(width_px, height_px, theme) as (figure, palette):
+        axes = _plane(figure, palette)
         axes.fill_between([0.0, limit], [0.0, limit], 0.0, color=palette.outlier, alpha=0.12, linewidth=0)
         axes.axhline(alert_m, color=palette.quiet, linewidth=1, linestyle="--")
         axes.scatter(error, np.minimum(level, limit), s=9, color=_by_side(error, level, palette), zorder=3)
@@ -193,34 +186,38 @@ def _by_side(error: FloatArray, level: FloatArray, palette: Palette) -> list[str
     return [palette.outlier if wrong else palette.inlier for wrong in error > level]
 
 
-def _palette(theme: str, width_px: int, height_px: int) -> Palette:
+@contextmanager
+def _canvas(width_px: int, height_px: int, theme: str) -> Iterator[tuple[Figure, Palette]]:
+    """Blank figure of a size and the colours to draw it in, for as long as it is drawn."""
     if not (200 <= width_px <= 4000 and 150 <= height_px <= 4000):
         raise InputError("size", "width must lie between 200 and 4000 pixels, height between 150 and 4000")
     if theme not in PALETTES:
         raise InputError("theme", f"unknown theme {theme!r}; known: {', '.join(PALETTES)}")
-    return PALETTES[theme]
+    palette = PALETTES[theme]
+    with drawing():
+        figure = Figure(
+            figsize=(width_px / _DPI, height_px / _DPI),
+            dpi=_DPI,
+            layout=ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.08),
+            facecolor=palette.paper,
+        )
+        yield figure, palette
 
 
 def _colour(status: SatelliteStatus, palette: Palette) -> str:
     return palette.outlier if status == "excluded" else palette.inlier
 
 
-def _sheet(width_px: int, height_px: int, palette: Palette) -> Figure:
-    return Figure(
-        figsize=(width_px / _DPI, height_px / _DPI),
-        dpi=_DPI,
-        layout=ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.08),
-        facecolor=palette.paper,
-    )
-
-
-def _dress(axes: Any, palette: Palette) -> None:
+def _plane(figure: Figure, palette: Palette) -> Any:
+    """Axes with a quiet frame."""
+    axes: Any = figure.add_subplot()
     axes.set_facecolor(palette.paper)
     axes.grid(color=palette.grid, linewidth=0.8)
     axes.tick_params(colors=palette.quiet)
     for name, spine in axes.spines.items():
         spine.set_visible(name in ("left", "bottom"))
         spine.set_color(palette.quiet)
+    return axes
 
 
 def _head(axes: Any, figure: Figure, title: str, palette: Palette, *, legend: bool = True) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from estimators.adapters.rinex_navigation import read_navigation
 from estimators.adapters.rinex_observations import CODES, read_observations
@@ -29,6 +29,7 @@ def read_rinex(
     weights: Weights = "elevation",
     ionosphere: Ionosphere = "auto",
     most_bytes: int = MOST_BYTES,
+    check: Callable[[], object] | None = None,
 ) -> ObservedEpochs:
     """Read epochs of pseudoranges, and correct them by the broadcast messages.
 
@@ -48,7 +49,9 @@ def read_rinex(
         ``broadcast``: by the coefficients of the navigation file; ``auto``: by them if it has any;
         ``dual``: by two codes, and satellites without a second code are left out.
     most_bytes : int
-        Unpacked size above which a file is refused.
+        Unpacked size above which a file, or the navigation files together, are refused.
+    check : callable, optional
+        Called now and then while a file is read; what it raises ends the reading.
 
     Returns
     -------
@@ -70,6 +73,6 @@ def read_rinex(
     """
     letters = read_letters(systems, "".join(CODES))
     check_ionosphere(ionosphere)
-    messages = navigation if isinstance(navigation, Navigation) else read_navigation(navigation)
-    observed = read_observations(observations, letters, 1 if ionosphere != "dual" else 3, most_bytes)
+    messages = navigation if isinstance(navigation, Navigation) else read_navigation(navigation, most_bytes)
+    observed = read_observations(observations, letters, 1 if ionosphere != "dual" else 3, most_bytes, check)
     return correct_observations(observed, messages, ionosphere=ionosphere, weights=weights, mask_deg=mask_deg)

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from estimators.adapters.rinex_text import Source, read_text
+from estimators.adapters.rinex_text import MOST_BYTES, Source, read_text
 from estimators.arrays import InputError
 from estimators.gnss.calendar import BEIDOU_BEHIND_S, GPS_EPOCH, WEEK_NS, WEEK_S, utc_to_gps
 from estimators.gnss.carriers import CARRIERS_HZ
@@ -57,13 +57,15 @@ _QZSS_HEALTH = 0xFE
 """All but the bit of the L6 signal (IS-QZSS-PNT, table 4.1.2-5)."""
 
 
-def read_navigation(navigation: Source | Sequence[Source]) -> Navigation:
+def read_navigation(navigation: Source | Sequence[Source], most_bytes: int = MOST_BYTES) -> Navigation:
     """Read broadcast ephemerides and ionosphere from RINEX navigation files.
 
     Parameters
     ----------
     navigation : bytes, Path or sequence of these
         RINEX 2 or 3, plain or gzip. Several files are taken together.
+    most_bytes : int
+        Unpacked size of all files together above which they are refused.
 
     Raises
     ------
@@ -75,8 +77,11 @@ def read_navigation(navigation: Source | Sequence[Source]) -> Navigation:
         raise InputError(FIELD, "expected at least one navigation file")
     ephemerides: list[Ephemeris] = []
     models: dict[str, Klobuchar] = {}
+    room = most_bytes
     for file in files:
-        lines = read_text(file, FIELD).split("\n")
+        text = read_text(file, FIELD, room)
+        room -= len(text)
+        lines = text.split("\n")
         version, system = _version(lines[0])
         end = _header_end(lines)
         for letter, model in _ionosphere(lines[:end]).items():

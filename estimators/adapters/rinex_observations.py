@@ -6,7 +6,7 @@ is decided here, in the order of :data:`CODES`, and times become GPS time.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any
 
@@ -48,9 +48,16 @@ _VALUE = 16
 _HEADER = 200_000
 """Characters among which the header lies."""
 _YEARS = (1980, 2100)
+_EPOCHS_PER_CHECK = 256
 
 
-def read_observations(source: Source, systems: str, bands: int, most_bytes: int = MOST_BYTES) -> Observations:
+def read_observations(
+    source: Source,
+    systems: str,
+    bands: int,
+    most_bytes: int = MOST_BYTES,
+    check: Callable[[], object] | None = None,
+) -> Observations:
     """Read an observation file.
 
     Parameters
@@ -63,6 +70,8 @@ def read_observations(source: Source, systems: str, bands: int, most_bytes: int 
         1 for the first band of every system, 2 or more for others too.
     most_bytes : int
         Unpacked size above which the file is refused.
+    check : callable, optional
+        Called now and then while a file is read; what it raises ends the reading.
 
     Raises
     ------
@@ -81,6 +90,8 @@ def read_observations(source: Source, systems: str, bands: int, most_bytes: int 
     values: list[FloatArray] = []
     sizes: list[int] = []
     for k in range(product.epoch_count):
+        if check is not None and k % _EPOCHS_PER_CHECK == 0:
+            check()
         record = product.epoch(k)
         if record.flag >= _FAILURE or record.epoch is None:
             continue

@@ -24,6 +24,7 @@ from service.codecs.batch.registry import (
     choose_writer,
 )
 from service.codecs.csv import read_horizon
+from service.codecs.limits import UNPACKED_PER_BODY, Limits
 from service.compute import Compute, Patience
 from service.errors import Problem, ProblemType
 from service.observability.metrics import Metrics
@@ -33,10 +34,6 @@ from service.schemas.problems import problem_responses
 from service.settings import Settings
 
 router = APIRouter(tags=["trends"])
-
-#: Columns may unpack to so many times the largest body: honest tables compress by less, and a bomb by a
-#: thousand times.
-UNPACKED_PER_BODY = 4
 
 _EXAMPLE = (
     "series,time,value\nnorth,0,1.0\nnorth,1,1.9\nnorth,2,3.1\nnorth,3,4.0\n"
@@ -145,7 +142,7 @@ def _job(
         import pyarrow as pa  # noqa: PLC0415
 
         from service.batches import answer_batch  # noqa: PLC0415
-        from service.codecs.batch.rows import Limits, Reading  # noqa: PLC0415
+        from service.codecs.batch.rows import Reading  # noqa: PLC0415
 
         limits = Limits(settings.max_points, settings.max_series, UNPACKED_PER_BODY * settings.max_body_bytes)
         with watch.phase("parse"):

@@ -8,43 +8,74 @@ from fastapi import APIRouter, Query, Request, Response
 
 import estimators
 from estimators.consensus.cancellation import cancelled_by
+from service.codecs.limits import UNPACKED_PER_BODY, Limits
 from service.codecs.negotiation import media_type_of
-from service.codecs.positions.columns import check_ranges
-from service.codecs.positions.read import RANGE_READERS, ReadRanges
-from service.codecs.positions.write import (
-    POSITION_WRITERS,
+from service.codecs.positions.columns import Sent
+from service.codecs.positions.pictures import check_picture
+from service.codecs.positions.registry import (
+    READERS,
+    UPLOAD,
+    WRITERS,
     PositionWriter,
+    RangeReader,
     choose_position_writer,
-    refuse_picture_of_many,
 )
 from service.compute import Compute, Patience
 from service.errors import Problem, ProblemType
 from service.observability.metrics import Metrics
 from service.observability.timing import Stopwatch
-from service.positions import locate_columns
 from service.schemas.answers import MethodAnswer
-from service.schemas.positions import PositionAnswer, PositionMethodsAnswer, PositionQuery, PositionsAnswer
+from service.schemas.fixes import PositionAnswer, PositionMethodsAnswer, PositionsAnswer
+from service.schemas.position_query import PositionQuery
 from service.schemas.problems import problem_responses
 from service.security.headers import PICTURE_POLICY
 from service.settings import Settings
 
 router = APIRouter(prefix="/v1", tags=["positions"])
 
-BODY_SCHEMAS: dict[str, dict[str, Any]] = {
+_BINARY = {"schema": {"type": "string", "format": "binary"}}
+BODY_SCHEMAS: dict[str, dict[str, Any]] = {name: dict(_BINARY) for name in READERS} | {
     "application/json": {"schema": {"$ref": "#/components/schemas/PositionRequest"}},
     "text/csv": {
         "schema": {
             "type": "string",
-            "description": "A header and one line per satellite and epoch; columns `x_m`, `y_m`, `z_m`, "
-            "`pseudorange_m` and optionally `sigma_m`, `cn0_dbhz`, `system`, `satellite`, `time`. Columns of "
-            "other names are left alone. The arguments come in the query, `rotated` among them.",
+            "description": "A header and one line per satellite and epoch; columns are named as the keys of "
+            "a JSON body, those of other names are left alone. The arguments come in the query, `rotated` "
+            "among them.",
+        },
+    },
+    UPLOAD: {
+        "schema": {
+            "type": "object",
+            "required": ["observations", "navigation"],
+            "properties": {
+                "observations": {
+                    "type": "string",
+                    "format": "binary",
+                    "description": "RINEX 2 or 3 observations, plain, gzip or Hatanaka-compressed, or an "
+                    "Android GnssLogger log; told by content.",
+                },
+                "navigation": {
+                    "type": "array",
+                    "items": {"type": "string", "format": "binary"},
+                    "description": "RINEX 2 or 3 navigation files of the same days, plain or gzip; several "
+                    "parts of this name are taken together.",
+                },
+            },
         },
     },
 }
 ANSWER_SCHEMAS: dict[str, dict[str, Any]] = {
-    writer.media_type: {"schema": {"type": "object" if writer.name == "geojson" else "string"}}
-    for writer in POSITION_WRITERS
-    if writer.name != "json"
+    writer.media_type: {"schema": {"type": "string"}} for writer in WRITERS if writer.name != "json"
+} | {
+    "application/geo+json": {
+        "schema": {
+            "anyOf": [
+                {"$ref": "#/components/schemas/FeatureAnswer"},
+                {"$ref": "#/components/schemas/FeatureCollectionAnswer"},
+            ]
+        }
+    }
 }
 
 RESPONSES: dict[int | str, dict[str, Any]] = {
@@ -71,6 +102,7 @@ RESPONSES: dict[int | str, dict[str, Any]] = {
         ProblemType.invalid_value,
         ProblemType.unknown_field,
         ProblemType.no_position,
+        ProblemType.not_installed,
         ProblemType.busy,
         ProblemType.not_ready,
         ProblemType.deadline_exceeded,
@@ -90,25 +122,28 @@ RESPONSES: dict[int | str, dict[str, Any]] = {
 async def find(request: Request, query: Annotated[PositionQuery, Query()]) -> Response:
     """Find the position of a receiver from pseudoranges, with faulty satellites left out.
 
-    Without `time` all rows are one epoch; with it, rows of equal time are an epoch, and epochs are solved
+    Ranges come as JSON columns with the arguments beside them, as a table (CSV, Arrow IPC, Parquet) or as
+    the files of a receiver (multipart/form-data), with the arguments in the query string. Without `time`
+    all rows of a table are one epoch; with it, rows of equal time are an epoch, and epochs are solved
     together. A position that is `ambiguous` should not be used alone.
     """
     headers = request.headers
     writer = choose_position_writer(headers.get("accept"), query.format)
-    media_type = media_type_of(
-        headers.get("content-type"), headers.get("content-encoding"), tuple(RANGE_READERS)
-    )
+    content_type = headers.get("content-type")
+    reader = READERS[media_type_of(content_type, headers.get("content-encoding"), tuple(READERS))]
     body = await request.body()
     if not body or body.isspace():
         raise Problem(ProblemType.empty_body)
     compute: Compute = request.app.state.compute
     settings: Settings = request.app.state.settings
     metrics: Metrics = request.app.state.metrics
+    limits = Limits(settings.max_points, None, UNPACKED_PER_BODY * settings.max_body_bytes)
     watch = Stopwatch()
     await request.app.state.warmth.wait(settings.queue_seconds)
 
     def job(patience: Patience) -> tuple[bytes, int]:
-        return answer(body, RANGE_READERS[media_type], writer, query, settings.max_points, watch, patience)
+        sent = Sent(body, content_type or "", query, limits, patience.check)
+        return answer(sent, reader, writer, watch, patience)
 
     content, rows = await compute.run(job, request.receive(), watch)
     metrics.count_fit(rows, watch.seconds)
@@ -120,13 +155,7 @@ async def find(request: Request, query: Annotated[PositionQuery, Query()]) -> Re
 
 
 def answer(
-    body: bytes,
-    reader: ReadRanges,
-    writer: PositionWriter,
-    query: PositionQuery,
-    max_points: int,
-    watch: Stopwatch,
-    patience: Patience,
+    sent: Sent, reader: RangeReader, writer: PositionWriter, watch: Stopwatch, patience: Patience
 ) -> tuple[bytes, int]:
     """Everything between a body and its answer; runs in a thread.
 
@@ -143,15 +172,15 @@ def answer(
         If nobody waits any more.
     """
     with watch.phase("parse"):
-        columns, arguments = reader(body, query)
-        check_ranges(columns, arguments, max_points)
-        refuse_picture_of_many(writer, many=columns.time is not None)
+        prepared = reader.read(sent)
+        if writer.is_picture:
+            check_picture(sent.query, many=prepared.is_series)
     patience.check()
     with watch.phase("fit"), cancelled_by(patience.flag):
-        located = locate_columns(columns, arguments, lambda _done, _total: patience.check())
+        located = prepared.locate(lambda _done, _total: patience.check())
     patience.check()
     with watch.phase("encode"):
-        return writer.write(located, query), columns.rows
+        return writer.write(located, sent.query), prepared.rows
 
 
 @router.get(

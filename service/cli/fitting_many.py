@@ -30,9 +30,10 @@ from service.codecs.batch.answer import Answer
 from service.codecs.batch.csv import read_csv
 from service.codecs.batch.documents import write_geojson, write_json, write_ndjson
 from service.codecs.batch.json import read_json
-from service.codecs.batch.rows import Batch, Limits, Reading
+from service.codecs.batch.rows import Batch, Reading
 from service.codecs.batch.tables import write_arrow, write_arrow_file, write_csv, write_parquet
 from service.codecs.columns import Columns, Times
+from service.codecs.limits import Limits
 from service.codecs.table import TableError, read_delimiter
 from service.codecs.table_text import find_delimiter
 from service.errors import Problem

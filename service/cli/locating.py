@@ -3,44 +3,66 @@
 from __future__ import annotations
 
 import sys
-import zlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import typer
 from pydantic import ValidationError
 
-from estimators import Epochs, Fix, Fixes, InputError, NoFit, PositionOptions, locate
-from estimators.gnss.observed_epochs import ObservedEpochs
 from service.cli.streams import NO_TREND, answers, fail, remark
 from service.codecs.arguments import from_validation
-from service.codecs.positions.columns import check_ranges, read_position_arguments
-from service.codecs.positions.read import read_csv_ranges
-from service.codecs.positions.write import POSITION_WRITERS, refuse_picture_of_many
+from service.codecs.limits import Limits
+from service.codecs.positions.columns import Recording, Sent, validated
+from service.codecs.positions.pictures import check_picture
+from service.codecs.positions.registry import READERS, WRITERS
 from service.errors import Problem, ProblemType
-from service.positions import Located, locate_columns, locate_many
-from service.schemas.fields import TimeUnit
-from service.schemas.positions import Motion, PositionAnswerQuery, PositionArguments, PositionQuery
+from service.positions.located import Located
+from service.positions.prepared import Prepared, prepare_recording
+from service.positions.recordings import kind_of
+from service.schemas.options import OPTION_PREFIX
+from service.schemas.position_query import TRUTH, PositionQuery
+from service.schemas.positions import PositionSettings, RecordingArguments
 
-LocateOutput = Literal["text", "json", "csv", "geojson", "svg", "png"]
+LocateOutput = Literal["text", "json", "csv", "arrow", "parquet", "geojson", "svg", "png"]
 
+#: By the bytes that a file begins with; what begins with none of them is read as CSV.
+_MAGIC = {
+    b"PAR1": "application/vnd.apache.parquet",
+    b"ARROW1": "application/vnd.apache.arrow.file",
+    b"\xff\xff\xff\xff": "application/vnd.apache.arrow.stream",
+}
 _MOST_ROWS = 10_000_000
-_GZIP = b"\x1f\x8b"
-_HEAD = 4096
+_BINARY = ("png", "arrow", "parquet")
 
 
 @dataclass(frozen=True, slots=True)
 class LocateRequest:
-    """What the command line asks for; see ``plumbline locate --help``."""
+    """What the command line asks for; see ``plumbline locate --help``.
+
+    Attributes
+    ----------
+    file : str
+    nav : tuple of Path
+    arguments : mapping of str to object
+        By their names in the query of the service; None where not given.
+    options : tuple of str
+        ``name=value`` each.
+    truth : tuple of str or None
+        Latitude, longitude, height.
+    answer : mapping of str to object
+        What shapes the answer, likewise.
+    output_format : str
+    output : Path or None
+    """
 
     file: str
     nav: tuple[Path, ...]
-    rotated: bool | None
-    method: str
-    motion: Motion | None
-    time_unit: TimeUnit | None
-    mask: float | None
+    arguments: Mapping[str, Any]
+    options: tuple[str, ...]
+    truth: tuple[str, ...] | None
+    answer: Mapping[str, Any]
     output_format: LocateOutput
     output: Path | None
 
@@ -53,62 +75,56 @@ def run_locate(request: LocateRequest) -> None:
     request : LocateRequest
     """
     source = "standard input" if request.file == "-" else request.file
-    if request.output_format == "png" and request.output is None:
-        fail("--format png: name the file with --output.")
+    if request.output_format in _BINARY and request.output is None:
+        fail(f"--format {request.output_format}: name the file with --output.")
     if request.output is not None and not request.output.parent.is_dir():
         fail(f"--output {request.output}: there is no directory {request.output.parent}.")
     body = _bytes_of(request.file)
     try:
-        located = _locate(body, request)
+        query = _query(request)
+        prepared = _prepared(body, query, request)
+        if request.output_format in ("svg", "png"):
+            check_picture(query, many=prepared.is_series)
+        located = prepared.locate(lambda _done, _total: None)
+        _put(located, query, request)
     except Problem as problem:
         code = NO_TREND if problem.kind is ProblemType.no_position else 2
         fail(f"{source}: {problem.detail.rstrip('.')}.", code)
-    except InputError as error:
-        fail(f"{source}: {error.field}: {error.message}.")
-    except ImportError:
-        fail(f"{source}: reading RINEX needs the extra [rinex]; install plumbline[rinex].")
-    _put(located, request)
 
 
-def _locate(body: bytes, request: LocateRequest) -> Located:
-    head = _head(body)
-    is_rinex = b"RINEX VERS" in head
-    if is_rinex or b"# Raw," in head or head.startswith(b"Raw,"):
+def _prepared(body: bytes, query: PositionQuery, request: LocateRequest) -> Prepared:
+    limits = Limits(points=_MOST_ROWS)
+    if kind_of(body) is not None:
         if not request.nav:
             fail(f"{request.file}: give the broadcast messages of its days with --nav FILE.")
-        if request.rotated is not None:
+        if query.rotated is not None:
             fail("--rotated: is for tables; the orbits of this file are computed here.")
-        return _locate_observed(_observed(body, request, rinex=is_rinex), request)
+        absent = next((path for path in request.nav if not path.is_file()), None)
+        if absent is not None:
+            fail(f"--nav {absent}: there is no such file.")
+        arguments = validated(RecordingArguments, query.arguments())
+        return prepare_recording(Recording(body, request.nav), arguments, limits, _nobody_leaves)
     if request.nav:
         fail(f"--nav: {request.file} is neither RINEX nor a GnssLogger log; tables carry their satellites.")
-    if request.rotated is None:
+    if query.rotated is None:
         fail(
             "--rotated or --not-rotated: say whether satellite positions are turned for the Earth's rotation."
         )
-    columns, arguments = read_csv_ranges(body, _query(request))
-    check_ranges(columns, arguments, _MOST_ROWS)
-    _refuse_picture(request, many=columns.time is not None)
-    return locate_columns(columns, arguments, _ignore)
-
-
-def _head(body: bytes) -> bytes:
-    """First bytes of a file, of what is in it where it is compressed."""
-    if not body.startswith(_GZIP):
-        return body[:_HEAD]
-    try:
-        return zlib.decompressobj(zlib.MAX_WBITS | 16).decompress(body, _HEAD)
-    except zlib.error:
-        fail("the file begins as gzip and cannot be unpacked; fetch it anew.")
+    media_type = next((name for magic, name in _MAGIC.items() if body.startswith(magic)), "text/csv")
+    return READERS[media_type].read(Sent(body, media_type, query, limits, _nobody_leaves))
 
 
 def _query(request: LocateRequest) -> PositionQuery:
-    given = {
-        "rotated": request.rotated,
-        "method": request.method,
-        "motion": request.motion,
-        "time_unit": request.time_unit,
-        "options.elevation_mask_deg": request.mask,
-    }
+    given = {**request.answer, **request.arguments}
+    for text in request.options:
+        name, found, value = text.partition("=")
+        if not found or name not in PositionSettings.model_fields:
+            fail(f"--option {text}: give NAME=VALUE with one of {', '.join(PositionSettings.model_fields)}.")
+        given[OPTION_PREFIX + name] = value
+    if request.truth is not None:
+        if len(request.truth) != len(TRUTH):
+            fail("--truth: give latitude, longitude and height, such as 52.5,13.4,80.")
+        given |= dict(zip(TRUTH, request.truth, strict=True))
     try:
         return PositionQuery.model_validate(
             {name: value for name, value in given.items() if value is not None}
@@ -117,59 +133,8 @@ def _query(request: LocateRequest) -> PositionQuery:
         raise from_validation(error.errors(include_input=False, include_url=False)) from None
 
 
-def _observed(body: bytes, request: LocateRequest, *, rinex: bool) -> ObservedEpochs:
-    """Epochs of a RINEX file or a log, corrected by broadcast messages."""
-    # Only who has such a file waits for the readers, and needs their extra.
-    from estimators.adapters.gnss_logger import read_gnss_logger  # noqa: PLC0415
-    from estimators.adapters.rinex import read_rinex  # noqa: PLC0415
-
-    absent = next((path for path in request.nav if not path.is_file()), None)
-    if absent is not None:
-        fail(f"--nav {absent}: there is no such file.")
-    read = read_rinex if rinex else read_gnss_logger
-    return (
-        read(body, list(request.nav))
-        if request.mask is None
-        else read(body, list(request.nav), mask_deg=request.mask)
-    )
-
-
-def _locate_observed(observed: ObservedEpochs, request: LocateRequest) -> Located:
-    epochs = Epochs.from_observed(observed)
-    motion = request.motion
-    many = len(epochs) != 1
-    _refuse_picture(request, many=many)
-    given = {"rotated": True, "method": request.method} | ({} if motion is None else {"motion": motion})
-    arguments: PositionArguments = read_position_arguments(given)
-    if many or motion is not None:
-        fixes = locate_many(epochs, arguments, PositionOptions(), _ignore)
-        return Located(_or_fail(fixes, request))
-    epoch = epochs[0]
-    fix = locate(
-        epoch.satellites_m,
-        epoch.pseudoranges_m,
-        sigma_m=epoch.sigma_m,
-        system=epoch.system,
-        satellite=epoch.satellite,
-        method=arguments.method,
-    )
-    return Located(_or_fail(fix, request))
-
-
-def _or_fail(answer: Fix | Fixes | NoFit, request: LocateRequest) -> Fix | Fixes:
-    if isinstance(answer, NoFit):
-        fail(f"{request.file}: no position ({answer.reason.value}): {answer.message.rstrip('.')}.", NO_TREND)
-    return answer
-
-
-def _ignore(_done: int, _total: int) -> None:
-    return None
-
-
-def _refuse_picture(request: LocateRequest, *, many: bool) -> None:
-    for writer in POSITION_WRITERS:
-        if writer.name == request.output_format:
-            refuse_picture_of_many(writer, many=many)
+def _nobody_leaves() -> None:
+    """Who calls from a terminal waits, or ends the process."""
 
 
 def _bytes_of(file: str) -> bytes:
@@ -183,12 +148,12 @@ def _bytes_of(file: str) -> bytes:
         fail(f"{file}: cannot be read ({error.strerror}).")
 
 
-def _put(located: Located, request: LocateRequest) -> None:
+def _put(located: Located, query: PositionQuery, request: LocateRequest) -> None:
     if request.output_format == "text":
         content = f"{located.answer.summary()}\n".encode()
     else:
-        writer = next(row for row in POSITION_WRITERS if row.name == request.output_format)
-        content = writer.write(located, PositionAnswerQuery())
+        writer = next(row for row in WRITERS if row.name == request.output_format)
+        content = writer.write(located, query)
     if request.output is None:
         answers()  # prepares the stream for letters that a terminal lacks
         typer.echo(content.decode(), nl=request.output_format == "json")

@@ -1,4 +1,4 @@
-"""Options that ``plumbline fit`` and ``plumbline fit-many`` share, one annotated type each.
+"""Options that several commands share, one annotated type each.
 
 Nothing here may import more than typer: the signatures are read for every ``--help``.
 """

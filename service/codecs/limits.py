@@ -1,8 +1,9 @@
-"""What the arrays of a request must hold, whatever format they came in: lengths, weights, magnitudes."""
+"""Bounds of what is read, and what the arrays of a request must hold, whatever format they came in."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,55 @@ from service.errors import Problem, ProblemType, invalid_value
 
 #: Of a caller's own column; the name comes back as that of a parameter.
 LONGEST_NAME = 100
+
+#: A body may unpack to so many times the largest body: honest tables compress by less, and a bomb by a
+#: thousand times.
+UNPACKED_PER_BODY = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Most that is read; None is no limit.
+
+    Attributes
+    ----------
+    points : int or None
+        Rows.
+    series : int or None
+    unpacked_bytes : int or None
+        Bytes of columns once they are decompressed.
+    """
+
+    points: int | None = None
+    series: int | None = None
+    unpacked_bytes: int | None = None
+
+    def check_points(self, count: int) -> None:
+        """Refuse more rows than are taken (413)."""
+        if self.points is not None and count > self.points:
+            raise Problem(
+                ProblemType.too_many_points,
+                f"{count} rows; at most {self.points} are taken",
+                extra={"limit": self.points},
+            )
+
+    def check_series(self, count: int) -> None:
+        """Refuse more series than are taken (413)."""
+        if self.series is not None and count > self.series:
+            raise Problem(
+                ProblemType.too_many_series,
+                f"more than {self.series} series; send them in several batches",
+                extra={"limit": self.series},
+            )
+
+    def check_bytes(self, count: int) -> None:
+        """Refuse what unpacks to more than is taken (413)."""
+        if self.unpacked_bytes is not None and count > self.unpacked_bytes:
+            raise Problem(
+                ProblemType.body_too_large,
+                f"the columns unpack to more than {self.unpacked_bytes} bytes; send fewer rows or columns",
+                extra={"limit": self.unpacked_bytes},
+            )
 
 
 def check_columns(columns: Columns, max_points: int) -> None:

@@ -10,7 +10,8 @@ from service.codecs.columns import Columns
 from service.codecs.csv import read_csv, write_csv
 from service.codecs.figure import write_png, write_svg
 from service.codecs.json import read_json, write_json
-from service.codecs.negotiation import best_offer, media_type_of
+from service.codecs.negotiation import media_type_of
+from service.codecs.offers import choose_offer
 from service.schemas.fields import AnswerFormat
 from service.schemas.options import AnswerQuery, FitArguments, TrendQuery
 
@@ -79,7 +80,4 @@ def choose_writer(accept: str | None, asked: AnswerFormat | None) -> Writer:
     >>> choose_writer("image/*;q=0.5, text/csv", None).name
     'csv'
     """
-    if asked is not None:
-        return next(writer for writer in WRITERS if writer.name == asked)
-    wanted = best_offer(accept, [writer.media_type for writer in WRITERS])
-    return next(writer for writer in WRITERS if writer.media_type == wanted)
+    return choose_offer(WRITERS, accept, asked)

@@ -1,53 +1,92 @@
-"""What a caller may ask of positions, and what is answered; answers are written by the codecs."""
+"""What a caller may ask of positions; the answers are in :mod:`service.schemas.fixes`."""
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic_core import PydanticCustomError
 
 import estimators
 from estimators import PositionOptions
-from service.schemas.answers import Answer, MethodAnswer, NoticeAnswer, WireTime
-from service.schemas.fields import Theme, TimeUnit
-from service.schemas.options import OPTION_PREFIX
+from service.schemas.fields import TimeUnit
 
-PositionFormat = Literal["json", "csv", "geojson", "svg", "png"]
 Motion = Literal["auto", "static", "moving", "independent"]
 Surroundings = Literal["auto", "open", "city"]
 
 DEFAULTS = PositionOptions()
+METHODS = tuple(estimators.position_methods())
 
-_Probability = Annotated[float, Field(gt=0.0, lt=1.0)]
-_Positive = Annotated[float, Field(gt=0.0, le=1e9)]
-_Method = Annotated[
+
+def _known_method(name: str) -> str:
+    if name not in METHODS:
+        raise PydanticCustomError("unknown_name", "must be one of: {names}", {"names": ", ".join(METHODS)})
+    return name
+
+
+Probability = Annotated[float, Field(gt=0.0, lt=1.0)]
+Positive = Annotated[float, Field(gt=0.0, le=1e9)]
+Method = Annotated[
     str,
+    AfterValidator(_known_method),
     Field(
         description="How faults are found; `/v1/position-methods` describes each. Of many epochs, any other "
         "than `auto` takes each epoch by itself.",
-        json_schema_extra={"enum": list(estimators.position_methods())},
+        json_schema_extra={"enum": list(METHODS)},
     ),
 ]
-_Rotated = Annotated[
+Rotated = Annotated[
     bool,
     Field(
         description="Whether satellite positions are in the frame of the time of reception, turned for the "
         "Earth's rotation while the signal travelled. Never guessed: it moves the answer by tens of metres."
     ),
 ]
-_Motion = Annotated[
+HowItMoves = Annotated[
     Motion,
-    Field(description="With `time`: how the receiver moves. Default `auto`, told from the data."),
+    Field(description="Of many epochs: how the receiver moves. Default `auto`, told from the data."),
 ]
-_Window = Annotated[float, Field(gt=0.0, le=1e6, description="Seconds that answer an epoch, if moving.")]
-_Causal = Annotated[bool, Field(description="Whether an epoch is answered by itself and earlier ones only.")]
-_Surroundings = Annotated[
+Window = Annotated[float, Field(gt=0.0, le=1e6, description="Seconds that answer an epoch, if moving.")]
+Causal = Annotated[bool, Field(description="Whether an epoch is answered by itself and earlier ones only.")]
+WhatIsAround = Annotated[
     Surroundings, Field(description="If moving: whether reflections lengthen ranges. Default `auto`.")
 ]
-_Unit = Annotated[TimeUnit, Field(description="Unit of times that are numbers since 1970.")]
-
-Numbers = list[float | None]
-Matrices = list[list[list[float | None]]]
+Unit = Annotated[TimeUnit, Field(description="Unit of times that are numbers since 1970.")]
+Raw = Annotated[
+    bool,
+    Field(
+        description="Whether pseudoranges are as measured, to be corrected here for satellite clock, group "
+        "delay, ionosphere, troposphere and elevation mask."
+    ),
+]
+Coefficients = Annotated[
+    list[float],
+    Field(
+        min_length=4,
+        max_length=4,
+        description="`raw`: four coefficients of the broadcast ionosphere (Klobuchar); alpha and beta go "
+        "together and need `time` in UTC. Default: the ionosphere is not corrected.",
+    ),
+]
+Troposphere = Annotated[bool, Field(description="`raw`: whether to correct the troposphere (Saastamoinen).")]
+Weights = Annotated[
+    Literal["elevation", "strength"],
+    Field(
+        description="`raw` and files: noise by elevation or by signal strength. Default: by strength of "
+        "phones and of tables that have it, otherwise by elevation."
+    ),
+]
+Systems = Annotated[
+    list[Annotated[str, Field(max_length=20)]],
+    Field(min_length=1, max_length=5, description="Files: letters or names of systems. Default: all."),
+]
+Ionosphere = Annotated[
+    Literal["auto", "broadcast", "dual", "none"],
+    Field(
+        description="Files: `broadcast` by the coefficients of the navigation file, `dual` by two codes; "
+        "`auto` by the coefficients if there are any."
+    ),
+]
 
 
 class PositionSettings(BaseModel):
@@ -55,33 +94,54 @@ class PositionSettings(BaseModel):
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
-    fault_prior: _Probability = DEFAULTS.fault_prior
-    alert_m: _Positive = DEFAULTS.alert_m
-    ambiguity: _Probability = DEFAULTS.ambiguity
-    integrity_risk: _Probability = DEFAULTS.integrity_risk
-    false_alarm: _Probability = DEFAULTS.false_alarm
-    missed_detection: _Probability = DEFAULTS.missed_detection
-    threshold_sigmas: _Positive = DEFAULTS.threshold_sigmas
+    fault_prior: Probability = DEFAULTS.fault_prior
+    alert_m: Positive = DEFAULTS.alert_m
+    ambiguity: Probability = DEFAULTS.ambiguity
+    integrity_risk: Probability = DEFAULTS.integrity_risk
+    false_alarm: Probability = DEFAULTS.false_alarm
+    missed_detection: Probability = DEFAULTS.missed_detection
+    threshold_sigmas: Positive = DEFAULTS.threshold_sigmas
     most_faults: Annotated[int, Field(ge=1, le=64)] = DEFAULTS.most_faults
-    satellite_fault: _Probability = DEFAULTS.satellite_fault
-    constellation_fault: _Probability = DEFAULTS.constellation_fault
+    satellite_fault: Probability = DEFAULTS.satellite_fault
+    constellation_fault: Probability = DEFAULTS.constellation_fault
     nominal_bias_m: Annotated[float, Field(ge=0.0, le=1e9)] = DEFAULTS.nominal_bias_m
-    elevation_mask_deg: Annotated[float | None, Field(ge=-90.0, lt=90.0)] = DEFAULTS.elevation_mask_deg
+    elevation_mask_deg: Annotated[
+        float | None,
+        Field(ge=-90.0, lt=90.0, description="Default: no mask; 10 where ranges are corrected here."),
+    ] = DEFAULTS.elevation_mask_deg
 
 
-class PositionArguments(BaseModel):
-    """Keys of a JSON body beside its columns."""
+class SolvingArguments(BaseModel):
+    """How positions are found, whatever the ranges come from."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
-    rotated: _Rotated
-    method: _Method = "auto"
-    time_unit: _Unit | None = None
-    motion: _Motion | None = None
-    window_s: _Window | None = None
-    causal: _Causal = False
-    surroundings: _Surroundings | None = None
+    method: Method = "auto"
+    motion: HowItMoves | None = None
+    window_s: Window | None = None
+    causal: Causal = False
+    surroundings: WhatIsAround | None = None
     options: PositionSettings = PositionSettings()
+
+
+class PositionArguments(SolvingArguments):
+    """Keys of a JSON body beside its columns, and the arguments of a table."""
+
+    rotated: Rotated
+    time_unit: Unit | None = None
+    raw: Raw = False
+    klobuchar_alpha: Coefficients | None = None
+    klobuchar_beta: Coefficients | None = None
+    troposphere: Troposphere | None = None
+    weights: Weights | None = None
+
+
+class RecordingArguments(SolvingArguments):
+    """Arguments of files as receivers write them."""
+
+    systems: Systems | None = None
+    ionosphere: Ionosphere = "auto"
+    weights: Weights | None = None
 
 
 class PositionRequest(PositionArguments):
@@ -100,7 +160,10 @@ class PositionRequest(PositionArguments):
     z_m: list[float | None]
     pseudorange_m: Annotated[
         list[float | None],
-        Field(description="Corrected for satellite clock, ionosphere and troposphere, metres."),
+        Field(
+            description="Metres; corrected for satellite clock, ionosphere and troposphere, or with `raw` "
+            "as measured."
+        ),
     ]
     sigma_m: Annotated[
         list[float | None] | None,
@@ -116,147 +179,36 @@ class PositionRequest(PositionArguments):
         list[int | float | str | None] | None,
         Field(description="Rows of equal time are an epoch: seconds, epoch numbers or ISO 8601."),
     ] = None
-
-
-class PositionAnswerQuery(BaseModel):
-    """Query parameters that shape the answer, whatever the body's media type."""
-
-    format: Annotated[
-        PositionFormat | None, Field(description="Format of the answer; takes precedence over `Accept`.")
+    range_rate_mps: Annotated[
+        list[float | None] | None,
+        Field(
+            description="With `time` and satellite velocities: how fast each range grows, by Doppler; "
+            "without `raw` corrected for the drift of the satellite clock."
+        ),
     ] = None
-    satellites: Annotated[
-        bool, Field(description="Whether a JSON answer includes the columns per satellite.")
-    ] = True
-    width_px: Annotated[int, Field(ge=200, le=4000, description="Width of a picture.")] = 600
-    height_px: Annotated[int, Field(ge=150, le=4000, description="Height of a picture.")] = 600
-    theme: Annotated[Theme, Field(description="Colours of a picture.")] = "light"
-    title: Annotated[
-        str | None, Field(max_length=120, pattern=r"^[^\x00-\x1f\x7f]*$", description="Title of a picture.")
+    vx_mps: Annotated[
+        list[float | None] | None, Field(description="Velocities of the satellites, as their positions.")
     ] = None
-
-
-class PositionQuery(PositionAnswerQuery):
-    """Query parameters of ``POST /v1/positions``; the arguments are for CSV, JSON bodies carry them."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    rotated: _Rotated | None = None
-    method: _Method | None = None
-    time_unit: _Unit | None = None
-    motion: _Motion | None = None
-    window_s: _Window | None = None
-    causal: _Causal | None = None
-    surroundings: _Surroundings | None = None
-    fault_prior: Annotated[_Probability | None, Field(alias="options.fault_prior")] = None
-    alert_m: Annotated[_Positive | None, Field(alias="options.alert_m")] = None
-    ambiguity: Annotated[_Probability | None, Field(alias="options.ambiguity")] = None
-    integrity_risk: Annotated[_Probability | None, Field(alias="options.integrity_risk")] = None
-    false_alarm: Annotated[_Probability | None, Field(alias="options.false_alarm")] = None
-    elevation_mask_deg: Annotated[
-        float | None, Field(alias="options.elevation_mask_deg", ge=-90.0, lt=90.0)
+    vy_mps: list[float | None] | None = None
+    vz_mps: list[float | None] | None = None
+    satellite_clock_s: Annotated[
+        list[float | None] | None,
+        Field(description="`raw`: how far the satellite clock is ahead, relativity included. Default 0."),
     ] = None
-
-    def arguments(self) -> dict[str, Any]:
-        """Nest the arguments that were given as in a JSON body."""
-        given = self.model_dump(
-            by_alias=True, include=self.model_fields_set - set(PositionAnswerQuery.model_fields)
-        )
-        present = {name: value for name, value in given.items() if value is not None}
-        options = {
-            name.removeprefix(OPTION_PREFIX): value
-            for name, value in present.items()
-            if name.startswith(OPTION_PREFIX)
-        }
-        plain = {name: value for name, value in present.items() if not name.startswith(OPTION_PREFIX)}
-        return plain | {"options": options}
-
-    def csv_only(self) -> list[str]:
-        """Parameters given that only a CSV body allows, by their names on the wire."""
-        names = self.model_fields_set - set(PositionAnswerQuery.model_fields)
-        return sorted(PositionQuery.model_fields[name].alias or name for name in names)
-
-
-class PlaceAnswer(Answer):
-    """A place on the WGS 84 ellipsoid and in Earth-centred, Earth-fixed metres."""
-
-    ecef_m: list[float]
-    lat_deg: float
-    lon_deg: float
-    height_m: float
-
-
-class IntegrityAnswer(Answer):
-    """Protection levels and what they assume; null where nothing bounds the error."""
-
-    hpl_m: float | None
-    vpl_m: float | None
-    risk: float
-    fault_prior: float
-    method: str
-
-
-class PositionAnswer(Answer):
-    """The position of one epoch, and which satellites lie."""
-
-    method: str
-    position: PlaceAnswer
-    covariance_enu_m2: Annotated[list[Numbers], Field(description="East, north, up.")]
-    clocks_m: Annotated[dict[str, float], Field(description="Receiver clock error per system.")]
-    dop: dict[str, float | None]
-    integrity: IntegrityAnswer
-    global_test: dict[str, float | None]
-    ambiguous: Annotated[
-        bool, Field(description="Whether the truth may lie beyond the alert limit: do not use it alone.")
-    ]
-    far_probability: float | None
-    rival: Annotated[dict[str, Any] | None, Field(description="The likeliest position elsewhere.")]
-    sigma_scale: float | None
-    consensus: dict[str, Any]
-    notices: list[NoticeAnswer]
-    satellites: Annotated[
-        dict[str, Any] | None, Field(description="Columns, one entry per row, in the order they came.")
+    group_delay_s: Annotated[
+        list[float | None] | None, Field(description="`raw`: TGD or BGD of the signal measured. Default 0.")
     ] = None
-
-
-class EpochColumns(Answer):
-    """One entry per epoch; null where an epoch has no position."""
-
-    time: list[WireTime]
-    status: list[str]
-    position_ecef_m: list[Numbers]
-    lat_deg: Numbers
-    lon_deg: Numbers
-    height_m: Numbers
-    velocity_enu_mps: list[Numbers]
-    covariance_enu_m2: Matrices
-    clocks_m: dict[str, Numbers]
-    hpl_m: Numbers
-    vpl_m: Numbers
-    far_probability: Numbers
-    ambiguous: list[bool]
-
-
-class PositionsAnswer(Answer):
-    """The positions of many epochs."""
-
-    motion: Motion
-    motion_reason: str
-    surroundings: Literal["open", "city"]
-    surroundings_reason: str
-    method: str
-    window_s: float | None
-    causal: bool
-    sigma_scale: float | None
-    correlation: float | None
-    fixes: EpochColumns
-    rivals: list[dict[str, Any]]
-    notices: list[NoticeAnswer]
-    satellites: Annotated[
-        dict[str, Any] | None, Field(description="Columns, one entry per row, in the order they came.")
+    clock_drift: Annotated[
+        list[float | None] | None, Field(description="`raw`: of the satellite clocks, s/s. Default 0.")
     ] = None
-
-
-class PositionMethodsAnswer(Answer):
-    """All methods of fault exclusion."""
-
-    methods: list[MethodAnswer]
+    accuracy_m: Annotated[
+        list[float | None] | None, Field(description="`raw`: accuracy of orbit and clock (URA). Default 2.")
+    ] = None
+    frequency_hz: Annotated[
+        list[float | None] | None, Field(description="`raw`: carrier. Default: the first of the system.")
+    ] = None
+    second_m: Annotated[
+        list[float | None] | None,
+        Field(description="`raw`: pseudorange on another carrier; both are combined without ionosphere."),
+    ] = None
+    second_hz: Annotated[list[float | None] | None, Field(description="`raw`: the other carrier.")] = None

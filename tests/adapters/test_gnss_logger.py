@@ -146,6 +146,14 @@ def test_navigation_of_another_day_is_refused(log: list[str], gnss_data: Path) -
     assert refused.value.field == "navigation"
 
 
+def test_reading_ends_with_what_the_check_raises(log: list[str], navigation: bytes) -> None:
+    def leave() -> None:
+        raise TimeoutError
+
+    with pytest.raises(TimeoutError):
+        read_gnss_logger("\n".join(first_epochs(log)).encode(), navigation, check=leave)
+
+
 def test_one_code_per_satellite_is_read_of_a_phone(log: list[str], navigation: bytes) -> None:
     with pytest.raises(InputError, match="one code per satellite"):
         read_gnss_logger("\n".join(first_epochs(log)).encode(), navigation, ionosphere="dual")

@@ -225,6 +225,24 @@ def test_a_file_that_unpacks_to_too_much_is_refused(minute: str, navigation: byt
         rinex.read_rinex(pack(minute.encode()), navigation, most_bytes=len(minute) // 2)
 
 
+def test_reading_ends_with_what_the_check_raises(minute: str, navigation: bytes) -> None:
+    def leave() -> None:
+        raise TimeoutError
+
+    with pytest.raises(TimeoutError):
+        rinex.read_rinex(minute.encode(), navigation, check=leave)
+
+
+def test_navigation_files_that_unpack_to_too_much_together_are_refused(
+    minute: str, navigation: bytes
+) -> None:
+    room = max(len(minute), len(navigation)) + 1
+    rinex.read_rinex(minute.encode(), navigation, most_bytes=room)
+    with pytest.raises(InputError, match="split it by time") as refused:
+        rinex.read_rinex(minute.encode(), [navigation, navigation], most_bytes=room)
+    assert refused.value.field == "navigation"
+
+
 @settings(deadline=None, max_examples=60)
 @given(data=st.data())
 def test_a_damaged_file_is_read_or_refused_and_nothing_else(minute: str, navigation: bytes, data) -> None:

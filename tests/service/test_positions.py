@@ -15,7 +15,7 @@ import estimators
 from estimators import Epochs, locate, locate_series
 from service.codecs.json import dumps
 from service.errors import ProblemType
-from service.schemas.positions import PositionAnswer, PositionsAnswer
+from service.schemas.fixes import PositionAnswer, PositionsAnswer
 from tests.service.ranges import HERE, LIAR, NAMES, as_csv, epoch, epochs
 
 
@@ -144,7 +144,7 @@ def test_pictures_of_the_sky_are_drawn_in_the_size_asked_for(client: TestClient)
 
 
 def test_a_picture_of_many_epochs_is_refused(client: TestClient) -> None:
-    refused(post(client, epochs(), format="svg"), ProblemType.invalid_value, "format")
+    refused(post(client, epochs(), format="svg"), ProblemType.invalid_value, "figure")
 
 
 def test_whether_positions_are_rotated_is_never_guessed(client: TestClient) -> None:

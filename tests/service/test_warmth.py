@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 import numba
 import pytest
+from numba.core.event import Event, Listener, install_listener
 
 from estimators import kernels
 from service import warmth
@@ -76,6 +77,33 @@ def test_the_service_is_not_ready_before_the_end_where_something_had_to_be_compi
     assert capsys.readouterr().err == ""
     held.set()
     assert until_ready(client) == {"status": "ready", "kernels": 3, "loaded": 3}
+
+
+def test_what_positions_need_is_loaded_behind_readiness_and_before_the_other_kernels(
+    make_client: MakeClient, held: threading.Event, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    loaded = threading.Event()
+    monkeypatch.setattr(warmth, "load_positions", loaded.set)
+    until_ready(make_client())
+    assert loaded.wait(30)
+    assert not held.is_set()
+
+
+def test_positions_need_no_code_that_warming_does_not_load() -> None:
+    # Compiled functions are declared as kernels, so that `plumbline warm` finds all of them.
+    for _ in kernels.warm():
+        pass
+    seen: list[Event] = []
+
+    class Seen(Listener):
+        def on_start(self, event: Event) -> None:
+            seen.append(event)
+
+        def on_end(self, event: Event) -> None: ...
+
+    with install_listener("numba:compile", Seen()):
+        warmth.load_positions()
+    assert seen == []
 
 
 def test_what_is_loaded_is_not_compiled_again() -> None:

@@ -16,9 +16,10 @@ import pyarrow as pa
 import estimators
 from estimators.arrays import Reason
 from estimators.trends.bases.periods import MOST_FOUND
+from service.codecs.batch.cells_out import number_array, time_array
 from service.codecs.batch.questions import crossing_columns, regime_columns
 from service.codecs.batch.rows import Batch
-from service.codecs.columns import UNIT_NANOSECONDS, TimeForm, Times
+from service.codecs.columns import TimeForm
 from service.schemas.options import FitArguments
 
 if TYPE_CHECKING:
@@ -127,18 +128,18 @@ def to_record_batch(
         estimates = table.parameters.get(name)
         for part, title in _PARTS.items():
             found = np.full(len(table), np.nan) if estimates is None else getattr(estimates, part)
-            columns[name + title] = _numbers(found)
-    columns["origin"] = _times(np.asarray(table.origin), batch)
+            columns[name + title] = number_array(found)
+    columns["origin"] = time_array(np.asarray(table.origin), batch.form, whole=batch.whole)
     columns["n"] = pa.array(np.asarray(table.n, dtype=np.int64))
     columns["inliers"] = pa.array(np.asarray(table.inliers, dtype=np.int64))
-    columns |= {name: _numbers(getattr(table, name)) for name in FIGURES}
+    columns |= {name: number_array(getattr(table, name)) for name in FIGURES}
     if arguments.regime == "last":
         columns |= regime_columns(table, batch.form)
     columns |= crossing_columns(table, arguments, batch.form, with_horizon=with_horizon)
     columns["notices"] = pa.array([list(codes) for codes in table.notices], pa.list_(pa.string()))
     if batch.lat is not None and batch.lon is not None:
-        columns["lat"] = _numbers(batch.lat[first:last])
-        columns["lon"] = _numbers(batch.lon[first:last])
+        columns["lat"] = number_array(batch.lat[first:last])
+        columns["lon"] = number_array(batch.lon[first:last])
     if points:
         columns |= _points(batch, first, table)
     return pa.RecordBatch.from_pydict(columns)
@@ -152,10 +153,10 @@ def _points(batch: Batch, first: int, table: TrendTable) -> dict[str, Any]:
     labels = table.points
     flat = {
         "row": pa.array(row),
-        "time": _times(batch.time[rows], batch),
+        "time": time_array(batch.time[rows], batch.form, whole=batch.whole),
         "inlier": pa.array(labels.inlier),
-        "probability": _numbers(labels.probability),
-        "residual": _numbers(labels.residual),
+        "probability": number_array(labels.probability),
+        "residual": number_array(labels.residual),
         "reason": _REASONS.take(pa.array(labels.reason_codes)),
     }
     return {
@@ -165,24 +166,3 @@ def _points(batch: Batch, first: int, table: TrendTable) -> dict[str, Any]:
 
 def _texts(items: tuple[str, ...]) -> Any:
     return pa.array([item or None for item in items], pa.string())
-
-
-def _numbers(column: Any) -> Any:
-    """Floats with null for NaN."""
-    return pa.array(np.asarray(column, dtype=np.float64), from_pandas=True)
-
-
-def _times(times: Times, batch: Batch) -> Any:
-    """Render times in the form they came: numbers, timestamps in UTC, or numbers since 1970."""
-    form = batch.form
-    if form.kind == "number":
-        return _numbers(times) if times.dtype.kind == "f" else pa.array(times)
-    moments = times.astype("datetime64[ns]")
-    if form.kind == "iso":
-        return pa.array(moments).cast(pa.timestamp("ns", "UTC"))
-    factor = UNIT_NANOSECONDS[form.unit or "s"]
-    missing = np.isnat(moments)
-    quotient, rest = np.divmod(moments.astype(np.int64), factor)
-    if batch.whole:
-        return pa.array(quotient, mask=missing)
-    return pa.array(quotient + rest / factor, mask=missing)

@@ -1,4 +1,4 @@
-"""A batch as Arrow IPC, stream or file, read record batch by record batch.
+"""Tables as Arrow IPC, stream or file, read record batch by record batch.
 
 What the messages say they hold is added up before anything is unpacked
 (:mod:`service.codecs.batch.arrow_messages`), and every record batch is validated in full before it is looked
@@ -14,6 +14,7 @@ import pyarrow as pa
 
 from service.codecs.batch.arrow_messages import sizes_of
 from service.codecs.batch.rows import Batch, Gatherer, Reading
+from service.codecs.batch.taking import Choice, Take
 from service.errors import Problem, ProblemType
 
 MAGIC = b"ARROW1"
@@ -36,6 +37,27 @@ def read_arrow(source: Any, reading: Reading) -> Batch:
     Problem
         If the bytes are no Arrow or end too early, a column is not there, or holds what it should not.
     """
+    gatherer = Gatherer(reading)
+    take_arrow(source, reading, gatherer.add)
+    return gatherer.finish()
+
+
+def take_arrow(source: Any, reading: Choice, take: Take) -> None:
+    """Hand over the pieces of an Arrow IPC stream or file, the columns chosen by their roles.
+
+    Parameters
+    ----------
+    source : pyarrow.NativeFile
+        Seekable.
+    reading : Choice
+    take : callable
+        Called with the columns of each piece.
+
+    Raises
+    ------
+    Problem
+        If the bytes are no Arrow or end too early.
+    """
     start = FILE_HEAD if source.read(len(MAGIC)) == MAGIC else 0
     try:
         _check_sizes(source, start, reading)
@@ -44,19 +66,17 @@ def read_arrow(source: Any, reading: Reading) -> Batch:
         places = reading.choose(header.names)
         options = pa.ipc.IpcReadOptions(included_fields=sorted(places.values()), use_threads=False)
         source.seek(start)
-        gatherer = Gatherer(reading)
         order = sorted(places, key=lambda role: places[role])
         for piece in pa.ipc.open_stream(source, options=options):
             piece.validate(full=True)
-            gatherer.add(dict(zip(order, piece.columns, strict=True)))
+            take(dict(zip(order, piece.columns, strict=True)))
     except (pa.ArrowException, OSError, UnicodeDecodeError):
         raise Problem(
             ProblemType.malformed_body, "the Arrow data are broken or end before they are complete"
         ) from None
-    return gatherer.finish()
 
 
-def _check_sizes(source: Any, start: int, reading: Reading) -> None:
+def _check_sizes(source: Any, start: int, reading: Choice) -> None:
     """Refuse what would be too much, and a stream that was cut off, from the messages alone."""
     source.seek(start)
     rows = unpacked = 0

@@ -1,6 +1,6 @@
-"""Columns of an answer as Python values, for the formats that are text: JSON, NDJSON, GeoJSON and CSV.
+"""Columns of an answer: as Arrow arrays, and from those as Python values for the formats that are text.
 
-NaN stands for "there is none", which orjson writes as null.
+NaN stands for "there is none": null in Arrow, and orjson writes it as null.
 """
 
 from __future__ import annotations
@@ -11,9 +11,37 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from service.codecs.columns import TimeForm
+from service.codecs.columns import UNIT_NANOSECONDS, TimeForm, Times
 
 _ISO = TimeForm("iso")
+
+
+def number_array(column: Any) -> Any:
+    """Floats as an Arrow array, with null for NaN."""
+    return pa.array(np.asarray(column, dtype=np.float64), from_pandas=True)
+
+
+def time_array(times: Times, form: TimeForm, *, whole: bool) -> Any:
+    """Render times as an Arrow array in the form they came: numbers, timestamps, or numbers since 1970.
+
+    Parameters
+    ----------
+    times : ndarray, shape (n,)
+    form : TimeForm
+    whole : bool
+        Whether numbers since 1970 are written as integers.
+    """
+    if form.kind == "number":
+        return number_array(times) if times.dtype.kind == "f" else pa.array(times)
+    moments = times.astype("datetime64[ns]")
+    if form.kind == "iso":
+        return pa.array(moments).cast(pa.timestamp("ns", "UTC"))
+    factor = UNIT_NANOSECONDS[form.unit or "s"]
+    missing = np.isnat(moments)
+    quotient, rest = np.divmod(moments.astype(np.int64), factor)
+    if whole:
+        return pa.array(quotient, mask=missing)
+    return pa.array(quotient + rest / factor, mask=missing)
 
 
 def to_values(column: Any) -> list[Any]:

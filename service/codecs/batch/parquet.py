@@ -1,4 +1,4 @@
-"""A batch as Parquet: only the columns needed, row group by row group, in pieces of bounded size.
+"""Tables as Parquet: only the columns needed, row group by row group, in pieces of bounded size.
 
 What the footer and then the pages say they hold is checked before anything is unpacked. Columns of text
 stay dictionary-encoded, so that a name that a million rows share is one name in memory.
@@ -14,6 +14,7 @@ import pyarrow.parquet as pq
 
 from service.codecs.batch.parquet_pages import DELTA_BYTE_ARRAY, pages_of
 from service.codecs.batch.rows import Batch, Gatherer, Reading
+from service.codecs.batch.taking import Choice, Take
 from service.errors import Problem, ProblemType, invalid_value
 
 MAGIC = b"PAR1"
@@ -44,18 +45,37 @@ def read_parquet(source: Any, reading: Reading) -> Batch:
         If the bytes are no Parquet, a column is not there, or holds what it should not.
     """
     gatherer = Gatherer(reading)
+    take_parquet(source, reading, gatherer.add)
+    return gatherer.finish()
+
+
+def take_parquet(source: Any, reading: Choice, take: Take) -> None:
+    """Hand over the pieces of a Parquet file, the columns chosen by their roles.
+
+    Parameters
+    ----------
+    source : pyarrow.NativeFile
+        Seekable.
+    reading : Choice
+    take : callable
+        Called with the columns of each piece.
+
+    Raises
+    ------
+    Problem
+        If the bytes are no Parquet.
+    """
     try:
         names, places = _columns(source, reading)
         file = _open(source, read_dictionary=[names[place] for place in places.values()])
         order = {names[place]: role for role, place in places.items()}
         for piece in file.iter_batches(PIECE, columns=list(order), use_threads=False):
             piece.validate(full=True)
-            gatherer.add({order[name]: piece.column(name) for name in piece.schema.names})
+            take({order[name]: piece.column(name) for name in piece.schema.names})
     except (pa.ArrowException, OSError, UnicodeDecodeError):
         raise Problem(
             ProblemType.malformed_body, "the Parquet file is broken or ends before it is complete"
         ) from None
-    return gatherer.finish()
 
 
 def _open(source: Any, **options: Any) -> pq.ParquetFile:
@@ -72,7 +92,7 @@ def _open(source: Any, **options: Any) -> pq.ParquetFile:
     )
 
 
-def _columns(source: Any, reading: Reading) -> tuple[list[str], dict[str, int]]:
+def _columns(source: Any, reading: Choice) -> tuple[list[str], dict[str, int]]:
     """Choose the columns and refuse what would be too much, from metadata alone."""
     file = _open(source)
     metadata = file.metadata
@@ -90,7 +110,7 @@ def _columns(source: Any, reading: Reading) -> tuple[list[str], dict[str, int]]:
     return names, places
 
 
-def _check_sizes(source: Any, metadata: Any, leaves: list[int], reading: Reading) -> None:
+def _check_sizes(source: Any, metadata: Any, leaves: list[int], reading: Choice) -> None:
     told = [
         metadata.row_group(group).column(leaf) for group in range(metadata.num_row_groups) for leaf in leaves
     ]

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any, cast
 
-from service.codecs.negotiation import best_offer, media_type_of
+from service.codecs.negotiation import media_type_of
+from service.codecs.offers import choose_offer
 from service.schemas.batch import BatchFormat
 
 if TYPE_CHECKING:
@@ -107,7 +108,4 @@ def choose_writer(accept: str | None, asked: BatchFormat | None) -> BatchWriter:
     >>> choose_writer("application/geo+json, text/csv;q=0.5", None).name
     'geojson'
     """
-    if asked is not None:
-        return next(writer for writer in WRITERS if writer.name == asked)
-    wanted = best_offer(accept, [writer.media_type for writer in WRITERS])
-    return next(writer for writer in WRITERS if writer.media_type == wanted)
+    return choose_offer(WRITERS, accept, asked)

@@ -16,8 +16,8 @@ import numpy.typing as npt
 
 from service.codecs.batch.cells import Floats, Integers, counted_from, name_codes, read_floats, read_times
 from service.codecs.columns import UNIT_NANOSECONDS, Columns, TimeForm, Times
-from service.codecs.limits import check_columns
-from service.errors import Problem, ProblemType, invalid_value
+from service.codecs.limits import Limits, check_columns
+from service.errors import invalid_value
 from service.schemas.fields import TimeUnit
 
 REQUIRED = ("series", "time", "value")
@@ -27,51 +27,6 @@ ROLES = (*REQUIRED, *OPTIONAL)
 Names = list[str] | list[int]
 
 _FURTHEST = {"lat": 90.0, "lon": 180.0}
-
-
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """Most that is read; None is no limit.
-
-    Attributes
-    ----------
-    points : int or None
-        Rows.
-    series : int or None
-    unpacked_bytes : int or None
-        Bytes of columns once they are decompressed.
-    """
-
-    points: int | None = None
-    series: int | None = None
-    unpacked_bytes: int | None = None
-
-    def check_points(self, count: int) -> None:
-        """Refuse more rows than are taken (413)."""
-        if self.points is not None and count > self.points:
-            raise Problem(
-                ProblemType.too_many_points,
-                f"{count} rows; at most {self.points} are taken",
-                extra={"limit": self.points},
-            )
-
-    def check_series(self, count: int) -> None:
-        """Refuse more series than are taken (413)."""
-        if self.series is not None and count > self.series:
-            raise Problem(
-                ProblemType.too_many_series,
-                f"more than {self.series} series; send them in several batches",
-                extra={"limit": self.series},
-            )
-
-    def check_bytes(self, count: int) -> None:
-        """Refuse what unpacks to more than is taken (413)."""
-        if self.unpacked_bytes is not None and count > self.unpacked_bytes:
-            raise Problem(
-                ProblemType.body_too_large,
-                f"the columns unpack to more than {self.unpacked_bytes} bytes; send fewer rows or columns",
-                extra={"limit": self.unpacked_bytes},
-            )
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,1 @@
+"""From ranges as they came, in tables or in files, to positions."""
