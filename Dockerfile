@@ -15,7 +15,7 @@ RUN python3 -m venv /app
 COPY pyproject.toml constraints.txt ./
 ENV PIP_CONSTRAINT=/build/constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_NO_CACHE_DIR=1
 RUN --mount=type=secret,id=pip.conf,target=/etc/pip.conf \
-    mkdir estimators service && touch README.md LICENSE && /app/bin/pip install '.[service]'
+    mkdir estimators service && touch README.md LICENSE && /app/bin/pip install '.[service,rinex]'
 
 COPY README.md LICENSE ./
 COPY estimators ./estimators

@@ -111,3 +111,7 @@ def test_one_point_is_a_level_and_none_is_no_fit() -> None:
 def test_what_only_one_shape_takes_is_refused() -> None:
     with pytest.raises(InputError, match="no meaning for the model auto"):
         chosen(T, degree=3)
+
+
+def test_three_readings_far_apart_overflow_nothing() -> None:
+    assert fit_trend(np.array([1.0, 1026.0, 0.0]), np.array([2.0, 0.0, 1.0]), model="auto")

@@ -254,7 +254,11 @@ def _turn(
         tau = t - anchor
         factor = np.exp(rate * tau)
         precision = factor * factor if weights is None else factor * factor * weights
-        data = LineData(tau, y / factor, precision)
+        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
+            turned = y / factor
+        if not np.isfinite(turned).all():
+            return None
+        data = LineData(tau, turned, precision)
         found = search.run(data, scale, options, 0)
         if isinstance(found, NoFit):
             return found

@@ -21,6 +21,8 @@ UNDETERMINED = 3.0
 
 _STEPS = 8
 _START_WIDTH = 2.5
+_LEAST_READING = 1e-300
+"""Smaller readings have a density that no number holds."""
 _LEAST_SCALE = 0.2
 """Least noise scale of the comparison, in that of the fit: it settles the domain, not the scale."""
 _APART = 1e6
@@ -57,8 +59,9 @@ def background(y: FloatArray, sign: float) -> FloatArray:
     density = np.full(y.size, 0.5 / spread)
     own = y * sign > 0.0
     if own.any():
-        logs = np.log(np.abs(y[own]))
-        density[own] += 0.5 / (np.abs(y[own]) * max(float(logs.max() - logs.min()), 1.0))
+        size = np.maximum(np.abs(y[own]), _LEAST_READING)
+        logs = np.log(size)
+        density[own] += 0.5 / (size * max(float(logs.max() - logs.min()), 1.0))
     return density
 
 
