@@ -34,6 +34,7 @@ class NoticeCode(StrEnum):
     ambiguous_faults = "ambiguous_faults"
     unchecked_position = "unchecked_position"
     untestable_satellites = "untestable_satellites"
+    unbounded_error = "unbounded_error"
     inconsistent_ranges = "inconsistent_ranges"
     satellites_below_mask = "satellites_below_mask"
 
@@ -78,6 +79,9 @@ NOTICE_MEANINGS: Mapping[NoticeCode, str] = {
         "As many satellites as unknowns: a faulty one would go unnoticed and move the position."
     ),
     NoticeCode.untestable_satellites: "Nothing checks the ranges of some satellites.",
+    NoticeCode.unbounded_error: (
+        "Faults that no range contradicts are likelier than the integrity risk: no level bounds the error."
+    ),
     NoticeCode.inconsistent_ranges: "The ranges that are used disagree by more than their noise.",
     NoticeCode.satellites_below_mask: "Satellites under the elevation mask take no part.",
 }
@@ -88,6 +92,7 @@ POSITION_NOTICES = frozenset(
         NoticeCode.ambiguous_faults,
         NoticeCode.unchecked_position,
         NoticeCode.untestable_satellites,
+        NoticeCode.unbounded_error,
         NoticeCode.inconsistent_ranges,
         NoticeCode.satellites_below_mask,
     }

@@ -3,7 +3,7 @@
 The receiver stands at 52.5 N, 13.4 E, 80 m, under the satellites of GPS and Galileo as circular orbits place
 them. A building hides the western sky up to 50 degrees, and the signals from there arrive by way of a glass
 front 40 m to the east: too long by the detour, and in agreement with one another about a place behind the
-glass. The others have a noise of one to three metres, the lower the satellite the more.
+glass. Every range has a noise of one metre.
 ``python -m examples.pseudoranges`` writes the file again.
 """
 
@@ -59,7 +59,7 @@ def simulate() -> tuple[list[tuple[str, str, float, float, float, float]], list[
         azimuths, elevations = azimuth_elevation((satellites - here) @ axes.T)
         for row in np.flatnonzero(elevations > MASK_DEG):
             name, up = f"{letter}{row + 1:02d}", np.radians(elevations[row])
-            noise_m = np.sqrt(0.5 + 0.5 / np.sin(up)) * random.standard_normal()
+            noise_m = random.standard_normal()
             range_m = np.linalg.norm(satellites[row] - here) + CLOCKS_M[system] + noise_m
             first, last = HIDDEN_AZIMUTHS_DEG
             if first < azimuths[row] < last and elevations[row] < HIDDEN_ELEVATION_DEG:

@@ -12,7 +12,7 @@ from benchmarks.positions.faults import Faulty
 from benchmarks.positions.sky import as_table
 from estimators.gnss.locate import locate
 from estimators.gnss.options import PositionOptions
-from estimators.gnss.snapshot.epochs import SOLVED
+from estimators.gnss.snapshot.one_epoch import SOLVED
 from estimators.gnss.snapshot.solved import solve_epochs
 from estimators.result import NoFit
 

@@ -41,6 +41,8 @@ _SYSTEMS: Mapping[str, Any] = MappingProxyType(
         "J": sidereon.GnssSystem.QZSS,
     }
 )
+_OLD_BEIDOU = 3.02
+"""The version in which BeiDou's B1 may be band 1; elsewhere it is 2 (RINEX 3.05, codes of BDS, notes)."""
 _FAILURE = 2
 """Epoch flags from here on are events, not observations (RINEX 3.05, table A3)."""
 _VALUE = 16
@@ -98,7 +100,7 @@ def read_observations(
         times.append(_instant(record.epoch))
         series = product.observation_values(k, wanted)
         satellites += series.satellites
-        signals += series.codes
+        signals += _renumbered(series) if float(header.version) == _OLD_BEIDOU else series.codes
         values.append(np.asarray(series.values, dtype=np.float64))
         sizes.append(len(series))
     if not times:
@@ -158,17 +160,27 @@ def _first_line(error: Exception) -> str:
 def _wanted(product: Any, letter: str, bands: int) -> list[str]:
     """Codes of the file for a system, with Doppler and strength of the first band."""
     present = set(product.obs_codes(_SYSTEMS[letter]))
+    old = float(product.header.version) == _OLD_BEIDOU
     found = []
     for place, (band, tracking) in enumerate(CODES[letter].items()):
         if place >= bands:
             break
-        for signal in (band + code for code in tracking):
+        bands_called = (band, "1") if letter == "C" and place == 0 and old else (band,)
+        for signal in (called + code for called in bands_called for code in tracking):
             kinds = "CDS" if place == 0 else "C"
             found += [kind + signal for kind in kinds if kind + signal in present]
         # RINEX 2 knows one Doppler and one strength per band; BeiDou's B1I was band 1 in RINEX 3.02.
         if place == 0:
             found += [kind + band for kind in "DS" if kind + band in present]
     return found
+
+
+def _renumbered(series: Any) -> list[str]:
+    """Codes with BeiDou's B1 in band 2."""
+    return [
+        f"{code[0]}2{code[2:]}" if name[0] == "C" and code[1:2] == "1" else code
+        for name, code in zip(series.satellites, series.codes, strict=True)
+    ]
 
 
 def _instant(time: Any) -> np.datetime64:

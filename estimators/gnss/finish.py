@@ -60,9 +60,6 @@ def make_fix(ended: Ended) -> Fix:
     if ended.verdict is not None and ended.verdict.integrity is not None:
         integrity = ended.verdict.integrity
     far = float(solved.far_probability[0])
-    if used.size == problem.state.size:
-        # Nothing checks the position: it is as wrong as often as any of the satellites is faulty.
-        far = max(far, 1.0 - (1.0 - options.fault_prior) ** used.size)
     test = _global_test(squares, freedom, options.false_alarm)
     rival = None
     if solved.rival_probability[0] > 0.0:
@@ -102,7 +99,7 @@ def make_fix(ended: Ended) -> Fix:
             search=_search(ended),
             seed=0,
         ),
-        notices=_notices(satellites, test, ambiguous, rival, far, freedom),
+        notices=_notices(satellites, test, ambiguous, rival, far, freedom, integrity),
         axes=axes,
     )
 
@@ -188,6 +185,7 @@ def _notices(
     rival: Rival | None,
     far: float,
     freedom: int,
+    integrity: Integrity,
 ) -> tuple[Notice, ...]:
     found = []
     if ambiguous:
@@ -202,6 +200,10 @@ def _notices(
             if status == "untestable"
         ]
         found.append(notice(NoticeCode.untestable_satellites, satellites=names))
+    if math.isinf(integrity.hpl_m):
+        found.append(
+            notice(NoticeCode.unbounded_error, risk=integrity.risk, fault_prior=integrity.fault_prior)
+        )
     if test.threshold is not None and test.statistic > test.threshold:
         found.append(
             notice(NoticeCode.inconsistent_ranges, statistic=test.statistic, threshold=test.threshold)

@@ -77,10 +77,11 @@ class Integrity:
     Attributes
     ----------
     hpl_m, vpl_m : float
-        The horizontal and the vertical error exceed these with at most the risk.
+        The horizontal and the vertical error exceed these with at most the risk; infinite where faults that
+        no range can contradict are likelier than that.
     risk : float
     fault_prior : float
-        Probability of a satellite to be faulty.
+        Mean probability of a satellite to be faulty.
     method : str
         ``"posterior"`` over fault sets, or ``"solution-separation"``.
     """

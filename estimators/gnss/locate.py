@@ -17,7 +17,7 @@ from estimators.gnss.methods.settling import judge_epoch
 from estimators.gnss.observations import Observed, as_epoch
 from estimators.gnss.options import PositionOptions
 from estimators.gnss.rows import on_input_rows
-from estimators.gnss.snapshot.epochs import SOLVED
+from estimators.gnss.snapshot.one_epoch import SOLVED
 from estimators.gnss.snapshot.problem import Problem, problem_at, solve_problem
 from estimators.gnss.snapshot.solved import solve_epochs
 from estimators.gnss.table import EpochTable

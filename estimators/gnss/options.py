@@ -25,12 +25,13 @@ class PositionOptions:
     Attributes
     ----------
     fault_prior : float
-        Probability of a satellite to be faulty before the data are seen. 0.1 is pessimistic on purpose: it
-        widens protection levels (METHODS_GNSS).
+        Mean probability of a satellite to be faulty before the data are seen; faults come together. 0.1 is
+        pessimistic on purpose: it widens protection levels (METHODS_GNSS).
     alert_m : float
         Horizontal error in metres that matters: an answer is ``ambiguous`` if the truth may lie beyond.
     ambiguity : float
-        Probability of that from which an answer says so.
+        Probability of that from which an answer says so, faults that no range contradicts among it
+        (METHODS_GNSS: 0.01 without these, and for faults that do not come together).
     integrity_risk : float
         Probability with which a protection level may be exceeded.
     false_alarm : float
@@ -57,7 +58,7 @@ class PositionOptions:
 
     fault_prior: float = 0.1
     alert_m: float = 20.0
-    ambiguity: float = 0.01
+    ambiguity: float = 0.02
     integrity_risk: float = 1e-5
     false_alarm: float = 1e-3
     missed_detection: float = 0.2

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import dataclasses
 import itertools
 
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from scipy.special import chdtri, ndtr, ndtri
+from scipy.special import ndtri
 
-from estimators import Fix, PositionOptions, locate
-from estimators.geodesy.local_frame import enu_axes
-from estimators.gnss.methods.araim import Araim
-from estimators.gnss.methods.fault_modes import list_fault_modes
+from estimators import Fix, PositionOptions
 from estimators.gnss.methods.glrt import Glrt
 from estimators.gnss.methods.greedy import Greedy
 from estimators.gnss.methods.huber import TUNING
@@ -22,43 +18,10 @@ from estimators.gnss.methods.minimal_subsets import all_subsets, judge_subsets
 from estimators.gnss.methods.p_ransac import PRansac
 from estimators.gnss.methods.raim import Raim
 from estimators.gnss.methods.ranco import Ranco, cover_faults
-from estimators.gnss.methods.separation import protection_levels, separate
-from estimators.gnss.observations import as_epoch
-from estimators.gnss.snapshot.problem import Problem, solve_problem
-from tests.gnss.skies import Sky, make_sky
+from tests.gnss.skies import make_sky
+from tests.gnss.solving import OPTIONS, limit, located, problem_of, squares_of
 
-OPTIONS = PositionOptions()
 SEEDS = st.integers(0, 10_000)
-
-
-def problem_of(sky: Sky, system: list[str] | None = None) -> Problem:
-    epoch = as_epoch(sky.satellites_m, sky.ranges_m, sky.sigma_m, system, sky.names, rotated=True)
-    solved = solve_problem(epoch.table)
-    assert solved is not None
-    return solved
-
-
-def squares_of(problem: Problem, kept: np.ndarray) -> float:
-    """Sum of squares of least squares over some satellites, solved anew."""
-    state, *_ = np.linalg.lstsq(problem.A[kept], problem.z[kept], rcond=None)
-    return float(np.sum((problem.z[kept] - problem.A[kept] @ state) ** 2))
-
-
-def limit(freedom: int) -> float:
-    return float(chdtri(freedom, OPTIONS.false_alarm))
-
-
-def located(sky: Sky, method: str, **options: object) -> Fix:
-    found = locate(
-        sky.satellites_m,
-        sky.ranges_m,
-        sigma_m=sky.sigma_m,
-        satellite=sky.names,
-        method=method,
-        options=PositionOptions(**options),  # type: ignore[arg-type]
-    )
-    assert isinstance(found, Fix)
-    return found
 
 
 # p-ransac
@@ -242,81 +205,3 @@ def test_a_fault_twice_as_large_moves_least_squares_twice_as_far_and_huber_no_fa
 def test_methods_that_leave_nothing_out_say_so() -> None:
     sky = make_sky(10, 3).with_faults({2: 500.0})
     assert located(sky, "ols").excluded == located(sky, "huber").excluded == ()
-
-
-# araim
-
-
-def test_the_protection_level_of_an_axis_holds_the_risk_it_was_given() -> None:
-    problem = problem_of(make_sky(10, 3))
-    present = np.ones(10, dtype=np.bool_)
-    modes = list_fault_modes(present, problem.table.clock, 1e-5, 1e-4, 1e-5)
-    found = separate(problem, enu_axes(0.0, 0.0), present, modes, 0.75, 1e-3)
-    assert found is not None
-    _, level = protection_levels(found, 1e-5)
-
-    def tail(x: np.ndarray) -> np.ndarray:
-        return np.asarray(ndtr(-x))
-
-    risk = 2 * tail((level - found.bias[0, 2]) / found.sigma[0, 2]) + np.sum(
-        1e-5 * tail((level - found.threshold[:, 2] - found.bias[1:, 2]) / found.sigma[1:, 2])
-    )
-    assert float(risk) == pytest.approx(0.5e-5 * (1 - modes.unmonitored / 1e-5), rel=1e-6)
-
-
-def test_separations_are_those_of_solutions_without_the_satellite() -> None:
-    problem = problem_of(make_sky(9, 1).with_faults({4: 50.0}))
-    present = np.ones(9, dtype=np.bool_)
-    modes = list_fault_modes(present, problem.table.clock, 1e-5, 1e-4, 1e-5)
-    axes = enu_axes(10.0, 20.0)
-    found = separate(problem, axes, present, modes, 0.75, 1e-3)
-    assert found is not None
-    for row in range(9):
-        kept = ~found.modes.faulty[row]
-        state, *_ = np.linalg.lstsq(problem.A[kept], problem.z[kept], rcond=None)
-        np.testing.assert_allclose(found.distance[row], np.abs(axes @ state[:3]), atol=1e-6)
-
-
-def test_araim_answers_with_protection_levels_of_its_own() -> None:
-    sky = make_sky(10, 3)
-    fix, auto = located(sky, "araim"), located(sky, "auto")
-    assert fix.integrity.method == "solution-separation"
-    assert auto.integrity.method == "posterior"
-    assert fix.integrity.fault_prior == OPTIONS.satellite_fault
-    assert (
-        located(sky, "araim", integrity_risk=1e-7).hpl_m
-        > fix.hpl_m
-        > located(sky, "araim", nominal_bias_m=0.0).hpl_m
-    )
-
-
-def test_araim_bounds_nothing_where_a_fault_cannot_be_watched() -> None:
-    assert np.isinf(located(make_sky(4, 3), "araim").hpl_m)
-
-
-def test_more_faults_are_watched_where_they_are_likelier() -> None:
-    present, clock = np.ones(10, dtype=np.bool_), np.zeros(10, dtype=np.int64)
-    rare = list_fault_modes(present, clock, 1e-5, 1e-4, 1e-5)
-    common = list_fault_modes(present, clock, 1e-2, 1e-4, 1e-5)
-    assert rare.faulty.sum(axis=1).max() == 1
-    assert common.faulty.sum(axis=1).max() > 2
-    assert common.unmonitored <= 1e-6
-
-
-def test_araim_excludes_a_constellation_that_lies_as_one() -> None:
-    sky = make_sky(18, 7)
-    elsewhere = sky.truth_m + 400.0 * sky.axes[0]
-    lies = np.linalg.norm(sky.satellites_m - elsewhere, axis=1) - np.linalg.norm(
-        sky.satellites_m - sky.truth_m, axis=1
-    )
-    system = ["G"] * 12 + ["E"] * 6
-    faulty = dataclasses.replace(sky, ranges_m=sky.ranges_m + np.where(np.arange(18) < 12, 0.0, lies))
-    problem = problem_of(faulty, system)
-    verdict = Araim().judge(problem, OPTIONS)
-    assert not verdict.excluded[:12].any()
-    assert int(verdict.excluded[12:].sum()) >= 4
-    # Whoever stays sets the constellation's clock and hardly moves the position.
-    kept = solve_problem(problem.table, ~verdict.excluded)
-    assert kept is not None
-    assert np.linalg.norm(problem.state[:3] - sky.truth_m) > 50.0
-    assert np.linalg.norm(kept.state[:3] - sky.truth_m) < 10.0

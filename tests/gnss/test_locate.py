@@ -224,6 +224,7 @@ POSITION_CASES: dict[NoticeCode, Callable[[], set[NoticeCode]]] = {
     },
     NoticeCode.unchecked_position: lambda: {item.code for item in fixed(make_sky(4, 1)).notices},
     NoticeCode.untestable_satellites: lambda: _codes(system=["G"] * 8 + ["E"]),
+    NoticeCode.unbounded_error: lambda: {item.code for item in fixed(make_sky(5, 1)).notices},
     NoticeCode.inconsistent_ranges: lambda: _codes(sigma_m=0.01, method="ols"),
     NoticeCode.satellites_below_mask: lambda: _codes(options=PositionOptions(elevation_mask_deg=35.0)),
 }

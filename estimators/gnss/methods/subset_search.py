@@ -11,7 +11,7 @@ import numpy as np
 from numba import types
 
 from estimators.arrays import FloatArray, IntArray
-from estimators.gnss.snapshot.fault_sets import insert_member, is_known
+from estimators.gnss.snapshot.beam import insert_member, is_known
 from estimators.gnss.snapshot.fault_weight import LARGEST_SET, extend
 from estimators.kernels import device, kernel, ro
 

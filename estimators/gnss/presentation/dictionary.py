@@ -20,6 +20,11 @@ def finite(values: FloatArray) -> list[float | None]:
     return [value if math.isfinite(value) else None for value in np.asarray(values).tolist()]
 
 
+def _bound(level: float) -> float | None:
+    """Protection level, None where nothing bounds the error."""
+    return level if math.isfinite(level) else None
+
+
 def fix_to_dict(fix: Fix, *, satellites: bool = True) -> dict[str, Any]:
     """JSON-safe form of an answer.
 
@@ -48,8 +53,8 @@ def fix_to_dict(fix: Fix, *, satellites: bool = True) -> dict[str, Any]:
             "tdop": fix.dop.time,
         },
         "integrity": {
-            "hpl_m": fix.integrity.hpl_m,
-            "vpl_m": fix.integrity.vpl_m,
+            "hpl_m": _bound(fix.hpl_m),
+            "vpl_m": _bound(fix.vpl_m),
             "risk": fix.integrity.risk,
             "fault_prior": fix.integrity.fault_prior,
             "method": fix.integrity.method,
@@ -116,8 +121,8 @@ def fix_to_feature(fix: Fix) -> dict[str, Any]:
         },
         "properties": {
             "method": fix.method,
-            "hpl_m": fix.hpl_m,
-            "vpl_m": fix.vpl_m,
+            "hpl_m": _bound(fix.hpl_m),
+            "vpl_m": _bound(fix.vpl_m),
             "ambiguous": fix.ambiguous,
             "used": int(fix.satellites.inlier.sum()),
             "excluded": list(fix.excluded),

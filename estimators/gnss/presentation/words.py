@@ -12,7 +12,7 @@ from estimators.gnss.systems import SYSTEMS
 from estimators.notices import NoticeCode
 
 if TYPE_CHECKING:
-    from estimators.gnss.fix import Fix
+    from estimators.gnss.fix import Fix, Integrity
 
 WIDTH = 80
 _LABEL = 13
@@ -25,6 +25,9 @@ ADVICE: Mapping[NoticeCode, str] = MappingProxyType(
         NoticeCode.unchecked_position: "Add a satellite, or take several epochs together.",
         NoticeCode.untestable_satellites: (
             "Add a second satellite of their system, or leave the system out."
+        ),
+        NoticeCode.unbounded_error: (
+            "Add satellites, take several epochs together, or accept a larger options.integrity_risk."
         ),
         NoticeCode.satellites_below_mask: "Lower options.elevation_mask_deg to use them.",
         NoticeCode.inconsistent_ranges: "Look at the sigmas, and at faults that the alert limit tolerates.",
@@ -51,11 +54,7 @@ def fix_to_text(fix: Fix) -> str:
     lines = [f"Position by {fix.method}", "━" * WIDTH]
     lines += _labelled("Where", f"{place.lat_deg:.7f}° {place.lon_deg:.7f}° {place.height_m:.2f} m")
     lines += _labelled("Std. error", f"{spread[0]:.2f} m east, {spread[1]:.2f} m north, {spread[2]:.2f} m up")
-    lines += _labelled(
-        "Protection",
-        f"{fix.hpl_m:.1f} m horizontally, {fix.vpl_m:.1f} m vertically, exceeded with probability "
-        f"{fix.integrity.risk:g} if each satellite is faulty with probability {fix.integrity.fault_prior:g}",
-    )
+    lines += _labelled("Protection", _protection(fix.integrity))
     lines += _labelled("Satellites", f"{used} used of {len(satellites)}; HDOP {fix.dop.horizontal:.2f}")
     clocks = ", ".join(f"{SYSTEMS[letter]} {value:.2f} m" for letter, value in fix.clocks_m.items())
     lines += _labelled("Clocks", clocks)
@@ -77,6 +76,17 @@ def fix_to_text(fix: Fix) -> str:
     for item in fix.notices:
         lines += _labelled("Note", f"{item.message} {ADVICE.get(item.code, '')}".rstrip())
     return "\n".join(lines)
+
+
+def _protection(integrity: Integrity) -> str:
+    assumed = (
+        f"probability {integrity.risk:g} if each satellite is faulty with probability "
+        f"{integrity.fault_prior:g}"
+    )
+    if math.isinf(integrity.hpl_m):
+        return f"none: larger errors would go unnoticed with more than {assumed}"
+    levels = f"{integrity.hpl_m:.1f} m horizontally, {integrity.vpl_m:.1f} m vertically"
+    return f"{levels}, exceeded with {assumed}"
 
 
 def _labelled(label: str, sentence: str) -> list[str]:

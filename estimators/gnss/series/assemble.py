@@ -15,6 +15,7 @@ from estimators.gnss.series.fixes import EpochStatus, Fixes, SeriesRival, Series
 from estimators.gnss.series.joint import Joint
 from estimators.gnss.series.observed import MASKED, MISSING, Observations
 from estimators.gnss.series.snapshots import count_clocks
+from estimators.gnss.series.unwatched import widen_unwatched
 from estimators.gnss.series.weights import fault_probabilities
 from estimators.notices import Notice, NoticeCode, notice
 
@@ -54,6 +55,7 @@ def make_fixes(observations: Observations, joint: Joint, settled: Settled, optio
     settled : Settled
     options : PositionOptions
     """
+    joint = widen_unwatched(joint, observations, options)
     order = observations.order
     back = np.argsort(order, kind="stable")
     geodetic = np.full(joint.position_m.shape, np.nan)

@@ -6,8 +6,7 @@ import numpy as np
 from numba import types
 
 from estimators.arrays import FloatArray, IntArray
-from estimators.gnss.series.standing import find_clock, geometry
-from estimators.gnss.series.weights import healthy_probability, log_density
+from estimators.gnss.series.epoch_clocks import fit_clock, geometry
 from estimators.kernels import kernel, ro
 
 
@@ -70,10 +69,18 @@ def score_places(
         for i in range(first, last):
             left[i] = ranges[i] - geometry(satellites[i], rotated, places[e], unit)
         for which in range(clocks[e]):
-            bias = find_clock(left, sigma, clock, first, last, which, scale, fault_prior, np.nan, 1.0)
-            clock_m[e, which] = bias
-            for i in range(first, last):
-                if clock[i] == which:
-                    residual[i] = left[i] - bias
-                    healthy[i] = healthy_probability(residual[i], sigma[i], scale, fault_prior)
-                    likelihood[e] += log_density(residual[i], sigma[i], scale, fault_prior)
+            clock_m[e, which], density = fit_clock(
+                left,
+                sigma,
+                clock,
+                first,
+                last,
+                which,
+                scale,
+                fault_prior,
+                np.nan,
+                1.0,
+                residual,
+                healthy,
+            )
+            likelihood[e] += density

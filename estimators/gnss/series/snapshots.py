@@ -11,7 +11,8 @@ from estimators.arrays import BoolArray, FloatArray, IntArray
 from estimators.gnss.options import PositionOptions
 from estimators.gnss.series.observed import Observations
 from estimators.gnss.series.places import score_places
-from estimators.gnss.snapshot.epochs import MOST_CLOCKS, SOLVED
+from estimators.gnss.snapshot.epochs import MOST_CLOCKS
+from estimators.gnss.snapshot.one_epoch import SOLVED
 from estimators.gnss.snapshot.solved import SCALE_RATE, SCALE_SHAPE, Solved, solve_epochs
 from estimators.gnss.table import EpochTable
 

@@ -98,7 +98,7 @@ def tail(
 
     Notes
     -----
-    The tails of :mod:`estimators.gnss.snapshot.decision`.
+    The tails of :mod:`estimators.gnss.snapshot.tails`.
     """
     beyond = np.maximum(radius[:, None] - distance, 0.0)
     return np.asarray((weight * np.exp(-0.5 * nu * np.log1p(beyond**2 / (nu * variance)))).sum(axis=1))

@@ -13,77 +13,13 @@ import numpy as np
 from numba import types
 
 from estimators.arrays import FloatArray, IntArray
-from estimators.gnss.series.weights import healthy_probability, log_density
-from estimators.gnss.snapshot.linearise import EARTH_RATE, SPEED_OF_LIGHT, factorise, solve_factorised
+from estimators.gnss.series.epoch_clocks import fit_clock, geometry
+from estimators.gnss.snapshot.linearise import factorise, solve_factorised
 from estimators.gnss.snapshot.parity import fill_inverse
 from estimators.gnss.snapshot.solved import SCALE_RATE, SCALE_SHAPE
-from estimators.kernels import device, kernel, ro
+from estimators.kernels import kernel, ro
 
 _SETTLED_M = 1e-3
-_CLOCK_STEPS = 3
-_STRANGE_CLOCK = 1e-6
-"""Density of a clock far from where its neighbours lead, relative to there: a receiver may reset it."""
-
-
-@device
-def geometry(satellite: FloatArray, rotated: bool, x: FloatArray, unit: FloatArray) -> float:
-    """Write the derivative of a range by the position; returns the range."""
-    sx, sy, sz = satellite[0], satellite[1], satellite[2]
-    if not rotated:
-        travelled = math.sqrt((sx - x[0]) ** 2 + (sy - x[1]) ** 2 + (sz - x[2]) ** 2)
-        angle = EARTH_RATE * travelled / SPEED_OF_LIGHT
-        sine, cosine = math.sin(angle), math.cos(angle)
-        sx, sy = cosine * sx + sine * sy, cosine * sy - sine * sx
-    dx, dy, dz = sx - x[0], sy - x[1], sz - x[2]
-    rho = math.sqrt(dx * dx + dy * dy + dz * dz)
-    unit[0] = -dx / rho
-    unit[1] = -dy / rho
-    unit[2] = -dz / rho
-    return rho
-
-
-@device
-def find_clock(
-    left: FloatArray,
-    sigma: FloatArray,
-    clock: IntArray,
-    first: int,
-    last: int,
-    which: int,
-    scale: float,
-    fault_prior: float,
-    expected: float,
-    spread: float,
-) -> float:
-    """Clock of one system in one epoch at which its ranges are likeliest.
-
-    Every range proposes the clock at which it is exact; the best proposal is refined by weighted means. Where
-    the epochs around lead one to expect a clock, proposals near it are likelier: that settles epochs in which
-    as many satellites lie as tell the truth.
-    """
-    best, value = 0.0, -math.inf
-    for i in range(first, last):
-        if clock[i] == which:
-            total = 0.0
-            if not math.isnan(expected):
-                off = (left[i] - expected) / spread
-                total = math.log(math.exp(-0.5 * off * off) + _STRANGE_CLOCK)
-            for j in range(first, last):
-                if clock[j] == which:
-                    total += log_density(left[j] - left[i], sigma[j], scale, fault_prior)
-            if total > value:
-                value = total
-                best = left[i]
-    for _ in range(_CLOCK_STEPS):
-        top, bottom = 0.0, 0.0
-        for j in range(first, last):
-            if clock[j] == which:
-                w = healthy_probability(left[j] - best, sigma[j], scale, fault_prior) / sigma[j] ** 2
-                top += w * left[j]
-                bottom += w
-        if bottom > 0.0:
-            best = top / bottom
-    return best
 
 
 @kernel(
@@ -172,7 +108,7 @@ def climb(
             for i in range(first, last):
                 left[i] = ranges[i] - geometry(satellites[i], rotated, x, unit[i])
             for which in range(clocks[e]):
-                bias = find_clock(
+                bias, density = fit_clock(
                     left,
                     sigma,
                     clock,
@@ -183,15 +119,15 @@ def climb(
                     fault_prior,
                     expected_m[e, which],
                     clock_spread_m,
+                    residual,
+                    healthy,
                 )
                 clock_m[e, which] = bias
+                total += density
                 weight_sum, left_mean = 0.0, 0.0
                 mean[:] = 0.0
                 for i in range(first, last):
                     if clock[i] == which:
-                        residual[i] = left[i] - bias
-                        healthy[i] = healthy_probability(residual[i], sigma[i], scale, fault_prior)
-                        total += log_density(residual[i], sigma[i], scale, fault_prior)
                         w = healthy[i] / (sigma[i] * sigma[i])
                         squares += w * residual[i] * residual[i]
                         count += healthy[i]

@@ -22,6 +22,7 @@ from estimators.gnss.series.motion import FIXED_STATES
 from estimators.gnss.series.moving import smooth_window
 from estimators.gnss.series.observed import Observations
 from estimators.gnss.series.snapshots import START_SCALE
+from estimators.gnss.series.spans import Span, plan_windows
 from estimators.gnss.series.spread import lag_one, larger_axis, protection, tail, widening
 from estimators.gnss.series.track import Track
 from estimators.gnss.series.weights import CITY, OPEN
@@ -30,9 +31,6 @@ from estimators.gnss.snapshot.solved import SCALE_SHAPE
 _ACCELERATION = (1.0, 0.05)
 """Densities of the horizontal and the vertical acceleration of a vehicle, m2/s3 (METHODS_GNSS, "Cities")."""
 _STEPS = 30
-_MOST_EPOCHS = 400
-_STRIDES = 10
-"""Windows that an epoch is in; each answers the epochs of its middle tenth."""
 _SUSPICIOUS = 0.1
 """Share of unexplained ranges from which a window starts again."""
 _WIDE_SCALE = 10.0
@@ -63,53 +61,6 @@ class Smoothed:
     density: float
     freedom: float
     effective: float
-
-
-@dataclass(frozen=True, slots=True)
-class Span:
-    """Epochs ``first`` to ``last`` answer those from ``answer_first`` to ``answer_last``, ends excluded."""
-
-    first: int
-    last: int
-    answer_first: int
-    answer_last: int
-
-
-def plan_windows(seconds: FloatArray, window_s: float, causal: bool) -> list[Span]:
-    """Windows that answer every epoch once.
-
-    Parameters
-    ----------
-    seconds : ndarray, shape (epochs,)
-        In order.
-    window_s : float
-    causal : bool
-        Whether an epoch may be answered by itself and earlier ones only.
-
-    Examples
-    --------
-    >>> plan_windows(np.arange(4.0), 2.0, True)[-1]
-    Span(first=1, last=4, answer_first=3, answer_last=4)
-    """
-    n = seconds.size
-    spans = []
-    k = 0
-    while k < n:
-        if causal:
-            after = k + 1
-            first, last = int(np.searchsorted(seconds, seconds[k] - window_s)), k + 1
-        else:
-            after = int(np.searchsorted(seconds, seconds[k] + window_s / _STRIDES))
-            after = max(k + 1, after)
-            middle = 0.5 * (seconds[k] + seconds[after - 1])
-            first = int(np.searchsorted(seconds, middle - 0.5 * window_s))
-            last = int(np.searchsorted(seconds, middle + 0.5 * window_s, side="right"))
-        spare = _MOST_EPOCHS // 2
-        first = max(first, (after - 2 * spare) if causal else (k - spare), 0)
-        last = min(last, after if causal else after + spare, n)
-        spans.append(Span(min(first, k), max(last, after), k, after))
-        k = after
-    return spans
 
 
 def solve_moving(

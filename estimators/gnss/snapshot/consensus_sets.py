@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from estimators.arrays import BoolArray, FloatArray, IntArray
-from estimators.gnss.snapshot.fault_weight import BIASES_M, LARGEST_SET, extend, fill_volume, log_weight
+from estimators.gnss.snapshot.fault_weight import BIASES_M, LARGEST_SET, extend, fill_width, log_weight
 from estimators.gnss.snapshot.linearise import factorise, fill_normal, solve_factorised
 from estimators.kernels import device
 
@@ -97,16 +97,14 @@ def propose_sets(
     A: FloatArray,
     S: FloatArray,
     z: FloatArray,
-    ridge: FloatArray,
     sigma: FloatArray,
     clock: IntArray,
     order: IntArray,
     squares: float,
-    fault_prior: float,
-    shape: float,
+    halves: int,
     scale: float,
+    priors: FloatArray,
     enumerated: int,
-    most: int,
     members: IntArray,
     sizes: IntArray,
     weights: FloatArray,
@@ -119,26 +117,29 @@ def propose_sets(
     A, S, z, sigma : ndarray
         Whitened design, parity matrix and whitened residuals of the solution by all satellites; noise in
         metres.
-    ridge : ndarray, shape (priors + 1, n)
     clock : ndarray of int64, shape (n,)
     order : ndarray of int64, shape (n,)
         Satellites in an order that does not hang on how they were given.
-    squares : float
-        z'z.
-    fault_prior, shape, scale : float
-    enumerated, most : int
-        Largest size of which all sets are there, and largest size to propose.
+    squares, halves, scale, priors
+        As in :func:`estimators.gnss.snapshot.beam.search_beam`.
+    enumerated : int
+        Largest size of which all sets are there.
     members, sizes, weights : ndarray
         Sets so far; extended.
     found : int
     """
     n, p = A.shape
+    most = priors.size - 1
     count = BIASES_M.size
+    ridge = np.zeros((count + 1, n))
+    for b in range(count):
+        for i in range(n):
+            ridge[b + 1, i] = (sigma[i] / BIASES_M[b]) ** 2
     factor = np.empty((count + 1, LARGEST_SET, LARGEST_SET))
     solved = np.empty((count + 1, LARGEST_SET))
     explained = np.empty((count + 1, LARGEST_SET))
     determinant = np.empty((count + 1, LARGEST_SET))
-    volume = np.empty(count)
+    width = np.empty(count)
     normal, step, residual = np.empty((p, p)), np.empty(p), np.empty(n)
     used = np.empty(n, np.bool_)
     chains = np.empty((SAMPLES, most), np.int64)
@@ -169,10 +170,8 @@ def propose_sets(
                 break
             if depth < enumerated:
                 continue
-            fill_volume(sigma, farthest, depth + 1, volume)
-            weight = log_weight(
-                n, depth + 1, n - p, squares, volume, explained, determinant, fault_prior, shape, scale
-            )
+            fill_width(sigma, farthest, depth + 1, determinant[:, depth], width)
+            weight = log_weight(priors[depth + 1], halves, squares, scale, explained[:, depth], width)
             if weight > best - HOPELESS and found < capacity:
                 row_of[: depth + 1] = np.sort(farthest[: depth + 1])
                 found = append_new(members, sizes, weights, found, depth + 1, row_of, weight)
@@ -206,10 +205,8 @@ def propose_sets(
                     )
                 if not possible:
                     continue
-                fill_volume(sigma, chosen, new, volume)
-                weight = log_weight(
-                    n, new, n - p, squares, volume, explained, determinant, fault_prior, shape, scale
-                )
+                fill_width(sigma, chosen, new, determinant[:, new - 1], width)
+                weight = log_weight(priors[new], halves, squares, scale, explained[:, new - 1], width)
                 if weight > best - HOPELESS and found < capacity:
                     row_of[:new] = np.sort(chosen[:new])
                     found = append_new(members, sizes, weights, found, new, row_of, weight)

@@ -1,13 +1,8 @@
-r"""From weighted fault sets to an answer: which satellites to leave out, how sure, and how far off at most.
+"""From weighted fault sets to an answer: which of them matter, where they lead, what to leave out.
 
-The position under a set F is x_F = x_0 - N A_F' S_FF^-1 z_F. The probability that the truth lies farther than
-r from a position x is bounded by
-
-    tail(r) = sum_G w_G (1 + u^2 / (nu s_G^2))^(-nu/2),  u = max(0, r - |x_G - x|),
-
-the radial tail of a two-dimensional Student density of nu degrees of freedom whose scale s_G is the larger
-semi-axis. The answer is the set that minimises the tail at the alert limit; its protection level solves
-tail(r) = risk (METHODS_GNSS, "A decision that is honest and still answers").
+The position under a set F is x_F = x_0 - N A_F' S_FF^-1 z_F. The answer is the set that minimises the tail at
+the alert limit (:mod:`estimators.gnss.snapshot.tails`), or as few of its satellites as do as well
+(METHODS_GNSS, "A decision that is honest and still answers").
 """
 
 from __future__ import annotations
@@ -18,15 +13,17 @@ import numpy as np
 
 from estimators.arrays import FloatArray, IntArray
 from estimators.gnss.snapshot.fault_weight import LARGEST_SET
+from estimators.gnss.snapshot.tails import tail
 from estimators.kernels import device
 
-HEAVY = 64
-"""Sets whose positions are computed; the others' weight is counted with the lightest of these."""
+HEAVY = 256
+"""Sets whose positions are computed, at most."""
 CANDIDATES = 12
 """Sets among which the answer is chosen."""
-_NEGLIGIBLE = 1e-9
-_PRECISION = 1e-6
-"""Of a protection level, relative."""
+_INDIFFERENT = 1e-3
+"""Of sets whose positions are far off with probabilities this close to the least, the likeliest is taken."""
+_NEGLIGIBLE = 0.1
+"""Share of the risk that sets may take together whose positions are not worth computing."""
 
 
 @device
@@ -109,61 +106,86 @@ def to_local(
 
 
 @device
-def radial_tail(beyond: float, variance: float, nu: float) -> float:
-    """Probability to lie farther than ``beyond`` from the centre, for a Student density in the plane."""
-    if beyond <= 0.0:
-        return 1.0
-    return math.exp(-0.5 * nu * math.log1p(beyond * beyond / (nu * variance)))
+def heaviest(
+    weights: FloatArray, found: int, untested: float, risk: float, places: IntArray, shares: FloatArray
+) -> tuple[int, float]:
+    """Places and probabilities of the heaviest sets, in decreasing order.
 
+    The others found go with the last of these, the least probable place that is known.
 
-@device
-def tail(radius: float, distance: FloatArray, variance: FloatArray, nu: float, weights: FloatArray) -> float:
-    """Probability bound that the truth lies farther than ``radius`` from a position."""
-    total = 0.0
-    for g in range(weights.size):
-        total += weights[g] * radial_tail(radius - distance[g], variance[g], nu)
-    return total
+    Parameters
+    ----------
+    weights : ndarray
+        ln w of the sets found.
+    found : int
+    untested : float
+        Weight of the sets that nothing can judge, in units of the heaviest found.
+    risk : float
+        Sets that take a small share of it together are left out.
+    places, shares : ndarray, shape (HEAVY,)
+        Out.
 
-
-@device
-def solve_tail(
-    risk: float, distance: FloatArray, variance: FloatArray, nu: float, weights: FloatArray
-) -> float:
-    """Radius whose tail is the risk, by bisection between powers of two."""
-    low, high = 0.0, 1.0
-    for _ in range(60):
-        if tail(high, distance, variance, nu, weights) <= risk:
-            break
-        low = high
-        high *= 2.0
-    while high - low > _PRECISION * high:
-        middle = 0.5 * (low + high)
-        if tail(middle, distance, variance, nu, weights) > risk:
-            low = middle
-        else:
-            high = middle
-    return high
-
-
-@device
-def heaviest(weights: FloatArray, found: int, places: IntArray, shares: FloatArray) -> int:
-    """Places and probabilities of the heaviest sets, in decreasing order; returns how many."""
-    largest = -math.inf
-    for k in range(found):
-        largest = max(largest, weights[k])
-    total = 0.0
-    for k in range(found):
-        total += math.exp(weights[k] - largest)
+    Returns
+    -------
+    count : int
+    anywhere : float
+        Probability of the sets that nothing can judge.
+    """
     order = np.argsort(-weights[:found], kind="mergesort")
-    count = 0
-    while count < min(HEAVY, found):
-        share = math.exp(weights[order[count]] - largest) / total
-        if share < _NEGLIGIBLE and count > 0:
+    largest = weights[order[0]]
+    total = untested
+    for k in range(found):
+        total += math.exp(weights[order[k]] - largest)
+    rest = 0.0
+    count = found
+    while count > 1:
+        share = math.exp(weights[order[count - 1]] - largest) / total
+        if count <= HEAVY and rest + share > _NEGLIGIBLE * risk:
             break
-        places[count] = order[count]
-        shares[count] = share
-        count += 1
-    return count
+        rest += share
+        count -= 1
+    for k in range(count):
+        places[k] = order[k]
+        shares[k] = math.exp(weights[order[k]] - largest) / total
+    shares[count - 1] += rest
+    return count, untested / total
+
+
+@device
+def empty_share(places: IntArray, shares: FloatArray) -> float:
+    """Probability that no satellite is faulty; the empty set is the first that is weighed."""
+    share = 0.0
+    for h in range(places.size):
+        if places[h] == 0:
+            share = shares[h]
+    return share
+
+
+@device
+def safest(alert_m: float, place: FloatArray, variance: FloatArray, nu: int, shares: FloatArray) -> int:
+    """Which of the heaviest sets leads to the position that is least likely to be far off.
+
+    Parameters
+    ----------
+    alert_m : float
+    place : ndarray, shape (count, 3)
+        Positions of the sets, the heaviest first, in a local frame.
+    variance : ndarray, shape (count,)
+        Of their larger horizontal semi-axes.
+    nu : int
+    shares : ndarray, shape (count,)
+    """
+    count = shares.size
+    candidates = min(count, CANDIDATES)
+    distance, risks = np.empty(count), np.empty(candidates)
+    for h in range(candidates):
+        for g in range(count):
+            distance[g] = math.hypot(place[h, 0] - place[g, 0], place[h, 1] - place[g, 1])
+        risks[h] = tail(alert_m, distance, variance, nu, shares)
+    best = 0
+    while risks[best] > risks.min() + _INDIFFERENT:
+        best += 1
+    return best
 
 
 @device

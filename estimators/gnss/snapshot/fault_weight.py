@@ -16,7 +16,10 @@ from estimators.kernels import device
 LARGEST_SET = 10
 BIASES_M = np.array([30.0, 100.0, 300.0, 1000.0, 3000.0])
 """Standard deviations of a fault in metres, one for all faults of an epoch, equally likely."""
-_SINGULAR = 1e-9
+SEEN = 30.0
+"""Satellites that the prior probability of a fault is worth. With very many, that is with independent faults,
+as many epochs are answered, and twice as many of those with four faults of 50 m wrongly."""
+SINGULAR = 1e-9
 """Least |S_FF|, the factor by which exclusion shrinks |A'A|; unlike a pivot it knows no order."""
 
 
@@ -55,7 +58,7 @@ def extend(
             pivot -= value * value
             held -= value * solved[b, row]
         before, volume = (explained[b, depth - 1], determinant[b, depth - 1]) if depth > 0 else (0.0, 1.0)
-        if not volume * pivot > _SINGULAR:
+        if not volume * pivot > SINGULAR:
             return False
         reciprocal = 1.0 / math.sqrt(pivot)
         factor[b, depth, depth] = reciprocal
@@ -66,45 +69,65 @@ def extend(
 
 
 @device
-def fill_volume(sigma: FloatArray, members: IntArray, size: int, volume: FloatArray) -> None:
-    """Products of B / sigma_i over a set."""
-    for b in range(volume.size):
-        volume[b] = 1.0
-        for row in range(size):
-            volume[b] *= BIASES_M[b] / sigma[members[row]]
+def next_odds(n: int, size: int, fault_prior: float) -> float:
+    """Prior probability of a set of ``size + 1`` satellites relative to one of ``size``.
+
+    The probability of a fault is unknown and common to the satellites of an epoch: where one range lies,
+    others do more often. It has a beta density of mean ``fault_prior`` and of the weight of ``SEEN``
+    satellites, which makes the sizes of fault sets beta-binomial.
+    """
+    return (SEEN * fault_prior + size) / (SEEN * (1.0 - fault_prior) + n - size - 1.0)
+
+
+@device
+def fill_priors(n: int, fault_prior: float, priors: FloatArray) -> None:
+    """Write ln of the prior probability of one set of each size from 0, relative to the empty set."""
+    priors[0] = 0.0
+    for size in range(priors.size - 1):
+        priors[size + 1] = priors[size] + math.log(next_odds(n, size, fault_prior))
 
 
 @device
 def log_weight(
-    n: int,
-    size: int,
-    freedom: int,
-    squares: float,
-    volume: FloatArray,
-    explained: FloatArray,
-    determinant: FloatArray,
-    fault_prior: float,
-    shape: float,
-    scale: float,
+    prior: float, halves: int, squares: float, scale: float, explained: FloatArray, width: FloatArray
 ) -> float:
-    """Unnormalised ln w_F; ``volume[b]`` is the product of B / sigma_i over F.
+    """Unnormalised ln w_F.
 
     The mean over B is taken relative to the term of the largest B, whose sum of squares is the least, with
-    powers by multiplication: most of the time of an epoch goes by here.
+    powers by multiplication: much of the time of an epoch goes by here.
+
+    Parameters
+    ----------
+    prior : float
+        ln of the prior probability.
+    halves : int
+        2 a + m, twice the power of the density.
+    squares, scale : float
+        z'z and b.
+    explained : ndarray, shape (biases + 1,)
+        z_F' (S_FF + D_B)^-1 z_F, an infinite B first.
+    width : ndarray, shape (biases,)
+        |S_FF + D_B| times the product of (B / sigma_i)^2 over F.
     """
-    prior = size * math.log(fault_prior) + (n - size) * math.log(1.0 - fault_prior)
-    power = shape + 0.5 * freedom
-    if size == 0:
-        return prior - power * math.log1p(0.5 * squares / scale)
-    count = volume.size
-    least = scale + 0.5 * max(0.0, squares - explained[count, size - 1])
-    halves = int(2.0 * power + 0.5)
+    count = width.size
+    least = scale + 0.5 * max(0.0, squares - explained[count])
+    odd = halves % 2 == 1
     total = 0.0
     for b in range(count):
-        left = scale + 0.5 * max(0.0, squares - explained[b + 1, size - 1])
-        ratio = math.sqrt(least / left)
-        total += whole_power(ratio, halves) / (volume[b] * math.sqrt(determinant[b + 1, size - 1]))
-    return prior - power * math.log(least / scale) + math.log(total / count)
+        ratio = least / (scale + 0.5 * max(0.0, squares - explained[b + 1]))
+        total += whole_power(ratio, halves // 2) * math.sqrt((ratio if odd else 1.0) / width[b])
+    return prior - 0.5 * halves * math.log(least / scale) + math.log(total / count)
+
+
+@device
+def fill_width(
+    sigma: FloatArray, members: IntArray, size: int, determinant: FloatArray, width: FloatArray
+) -> None:
+    """Multiply the determinants of a set, an infinite bias first, by the products of (B / sigma_i)^2."""
+    for b in range(width.size):
+        width[b] = determinant[b + 1]
+        for row in range(size):
+            width[b] *= (BIASES_M[b] / sigma[members[row]]) ** 2
 
 
 @device

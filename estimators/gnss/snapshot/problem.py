@@ -77,24 +77,7 @@ def solve_problem(table: EpochTable, used: BoolArray | None = None) -> Problem |
     rows = np.ones(n, dtype=np.bool_) if used is None else np.ascontiguousarray(used)
     if int(rows.sum()) < p:
         return None
-    state = np.zeros(p)
-    A, z = np.empty((n, p)), np.empty(n)
-    N, gain, S = np.empty((p, p)), np.empty((p, n)), np.empty((n, n))
-    solved = _solve(
-        table.satellites_m,
-        table.pseudoranges_m,
-        table.sigma_m,
-        table.clock,
-        table.rotated,
-        rows,
-        state,
-        A,
-        z,
-        N,
-        gain,
-        S,
-    )
-    return Problem(table, state, A, z, N, gain, S, rows) if solved else None
+    return _linearised(table, np.zeros(p), rows, settled=False)
 
 
 def problem_at(table: EpochTable, state: FloatArray, used: BoolArray) -> Problem | None:
@@ -107,16 +90,21 @@ def problem_at(table: EpochTable, state: FloatArray, used: BoolArray) -> Problem
     state : ndarray, shape (p,)
     used : ndarray of bool, shape (n,)
     """
+    return _linearised(table, state, used, settled=True)
+
+
+def _linearised(table: EpochTable, state: FloatArray, used: BoolArray, *, settled: bool) -> Problem | None:
     n, p = table.pseudoranges_m.size, state.size
     A, z = np.empty((n, p)), np.empty(n)
     N, gain, S = np.empty((p, p)), np.empty((p, n)), np.empty((n, n))
-    solved = _fill_at(
+    determined = _fill(
         table.satellites_m,
         table.pseudoranges_m,
         table.sigma_m,
         table.clock,
         table.rotated,
         used,
+        settled,
         state,
         A,
         z,
@@ -124,35 +112,34 @@ def problem_at(table: EpochTable, state: FloatArray, used: BoolArray) -> Problem
         gain,
         S,
     )
-    return Problem(table, state, A, z, N, gain, S, used) if solved else None
+    return Problem(table, state, A, z, N, gain, S, used) if determined else None
 
 
-_TYPES = (
-    ro(types.float64, 2),
-    ro(types.float64),
-    ro(types.float64),
-    ro(types.int64),
-    types.boolean,
-    ro(types.boolean),
+@kernel(
+    types.boolean(
+        ro(types.float64, 2),
+        ro(types.float64),
+        ro(types.float64),
+        ro(types.int64),
+        types.boolean,
+        ro(types.boolean),
+        types.boolean,
+        types.float64[::1],
+        types.float64[:, ::1],
+        types.float64[::1],
+        types.float64[:, ::1],
+        types.float64[:, ::1],
+        types.float64[:, ::1],
+    )
 )
-_OUT = (
-    types.float64[::1],
-    types.float64[:, ::1],
-    types.float64[::1],
-    types.float64[:, ::1],
-    types.float64[:, ::1],
-    types.float64[:, ::1],
-)
-
-
-@kernel(types.boolean(*_TYPES, *_OUT))
-def _solve(
+def _fill(
     satellites: FloatArray,
     ranges: FloatArray,
     sigma: FloatArray,
     clock: IntArray,
     rotated: bool,
     used: BoolArray,
+    settled: bool,
     state: FloatArray,
     A: FloatArray,
     z: FloatArray,
@@ -160,35 +147,15 @@ def _solve(
     gain: FloatArray,
     S: FloatArray,
 ) -> bool:
+    """Linearise about a state, where it is a solution already, or about that which iteration finds."""
     p = state.size
     factor, step = np.empty((p, p)), np.empty(p)
-    if not iterate(satellites, ranges, sigma, clock, rotated, used, state, A, z, factor, step):
-        return False
-    fill_inverse(factor, N)
-    fill_parity(A, N, gain, S)
-    return True
-
-
-@kernel(types.boolean(*_TYPES, *_OUT))
-def _fill_at(
-    satellites: FloatArray,
-    ranges: FloatArray,
-    sigma: FloatArray,
-    clock: IntArray,
-    rotated: bool,
-    used: BoolArray,
-    state: FloatArray,
-    A: FloatArray,
-    z: FloatArray,
-    N: FloatArray,
-    gain: FloatArray,
-    S: FloatArray,
-) -> bool:
-    p = state.size
-    factor, step = np.empty((p, p)), np.empty(p)
-    linearise(satellites, ranges, sigma, clock, rotated, state, A, z)
-    fill_normal(A, z, used, factor, step)
-    if not factorise(factor):
+    if settled:
+        linearise(satellites, ranges, sigma, clock, rotated, state, A, z)
+        fill_normal(A, z, used, factor, step)
+        if not factorise(factor):
+            return False
+    elif not iterate(satellites, ranges, sigma, clock, rotated, used, state, A, z, factor, step):
         return False
     fill_inverse(factor, N)
     fill_parity(A, N, gain, S)

@@ -29,7 +29,7 @@ class Solved:
     Attributes
     ----------
     status : ndarray of int64, shape (epochs,)
-        ``SOLVED`` and its neighbours in :mod:`estimators.gnss.snapshot.epochs`.
+        ``SOLVED`` and its neighbours in :mod:`estimators.gnss.snapshot.one_epoch`.
     state : ndarray, shape (epochs, 3 + MOST_CLOCKS)
     excluded, rival : ndarray of bool, shape (rows,)
     fault_probability : ndarray, shape (rows,)
