@@ -100,7 +100,7 @@ def test_least_squares_is_moved_by_the_same_outliers() -> None:
 def test_inlier_probabilities_tell_outliers_from_inliers() -> None:
     X, y, clean = planes(4)
     model = PlumblineRegressor().fit(X, y)
-    assert model.inlier_probability_[~clean].max() < 0.01
+    assert model.inlier_probability_[~clean].max() < 0.05
     assert np.median(model.inlier_probability_[clean]) > 0.9
 
 

@@ -126,3 +126,49 @@ def test_few_followers_among_errors_far_away_are_believed() -> None:
     z = inlier_probability(residual, None, 1.0)
     assert z[:15].mean() > 0.8
     assert z[np.abs(residual) > 8.0].max() < 0.2
+
+
+def _clean_t2(n: int, draws: int, seed: int) -> list[np.ndarray]:
+    rng = np.random.default_rng(seed)
+    return [inlier_probability(rng.standard_t(2, n), None, 1.0) for _ in range(draws)]
+
+
+@pytest.mark.parametrize(("n", "doubt"), [(50, 0.05), (200, 0.02), (1000, 0.01)])
+def test_clean_heavy_tails_are_believed_the_more_the_more_of_them_there_are(n: int, doubt: float) -> None:
+    assert np.mean([1.0 - z.mean() for z in _clean_t2(n, 40, 7)]) < doubt
+
+
+def test_the_farthest_reading_of_clean_heavy_tails_is_believed_where_the_others_lead_up_to_it() -> None:
+    assert np.median([z.min() for z in _clean_t2(1000, 40, 8)]) > 0.9
+
+
+@pytest.mark.parametrize("sides", [(1.0, 1.0), (1.0, -1.0)])
+def test_two_spikes_among_near_normal_readings_are_no_tail(sides: tuple[float, float]) -> None:
+    rng = np.random.default_rng(9)
+    spikes = 30.0 * np.array(sides)
+    z = [inlier_probability(np.append(rng.normal(size=98), spikes), None, 1.0) for _ in range(20)]
+    assert np.mean([row[-2:].max() for row in z]) < 0.05
+    assert max(row[-2:].max() for row in z) < 0.5
+    assert min(row[:98].mean() for row in z) > 0.98
+
+
+def test_a_lone_spike_is_doubted_the_more_the_more_readings_show_no_tail() -> None:
+    rng = np.random.default_rng(10)
+    spike = [
+        np.mean([inlier_probability(np.append(rng.normal(size=n), 20.0), None, 1.0)[-1] for _ in range(20)])
+        for n in (20, 200, 1000)
+    ]
+    assert spike[0] < 0.6
+    assert spike[1] < 0.5 * spike[0]
+    assert spike[2] < 0.01
+
+
+def test_a_few_errors_in_a_long_heavy_tailed_series_are_not_believed_because_the_bulk_fits_no_law_well() -> (
+    None
+):
+    rng = np.random.default_rng(11)
+    truth = np.arange(10_000) >= 100
+    residual = np.where(truth, rng.standard_t(3, 10_000), rng.uniform(30.0, 60.0, 10_000))
+    z = inlier_probability(residual, None, 1.0)
+    assert z[~truth].max() < 0.1
+    assert z[truth].mean() > 0.97

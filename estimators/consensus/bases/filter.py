@@ -18,7 +18,6 @@ from estimators.consensus.structure.mixture import (
     BELOW,
     BELOW_MEAN,
     CORRELATION,
-    CORRELATION_FLOOR,
     ENTER,
     HELD,
     HELD_COUNT,
@@ -26,17 +25,19 @@ from estimators.consensus.structure.mixture import (
     INLIERS,
     LEVEL_GAIN,
     LIKELIHOOD,
+    ROOT_2PI,
     SEPARATION,
     SIGMA,
     STAY,
+    STUDENT5,
     TAU_FLOOR,
     UNIFORM,
+    settle_correlation,
+    settle_labels,
     side_scale,
 )
 from estimators.kernels import device
 
-_ROOT_2PI = 2.5066282746310002
-_STUDENT5 = 0.3796066898224944  # density of Student's t with 5 degrees of freedom at 0
 _LEAST_INLIERS = 2.5
 
 
@@ -79,7 +80,7 @@ def filter_step(
     enter, stay = params[ENTER], params[STAY]
     uniform, above, below = params[UNIFORM], params[ABOVE], params[BELOW]
     theta_up, theta_down = params[ABOVE_MEAN], params[BELOW_MEAN]
-    narrow = 1.0 / (_ROOT_2PI * s)
+    narrow = 1.0 / (ROOT_2PI * s)
     apart = SEPARATION * s
     log_likelihood = 0.0
     product = 1.0
@@ -114,7 +115,7 @@ def filter_step(
         if age > 0.0:
             away = (r - level) / tau
             tail = 1.0 / (1.0 + 0.2 * away * away)
-            f_held = _STUDENT5 / tau * root * tail * tail * tail
+            f_held = STUDENT5 / tau * root * tail * tail * tail
             f_out = (1.0 - held_share) * f_free + held_share * f_held
         p_out = previous * stay + (1.0 - previous) * enter
         joint_out = p_out * f_out
@@ -169,9 +170,8 @@ def filter_step(
     params[HELD_COUNT] = q_held
     if inliers < _LEAST_INLIERS:
         return False
-    if correlate and lag_square > 0.0:
-        rho = lagged / lag_square
-        params[CORRELATION] = min(rho, 0.97) if rho > CORRELATION_FLOOR / math.sqrt(inliers) else 0.0
+    if correlate:
+        settle_correlation(lagged, lag_square, inliers, params)
     if frozen:
         return True
     free_total = q_uniform + q_above + q_below + 1.0
@@ -180,8 +180,6 @@ def filter_step(
     params[UNIFORM] = 1.0 - params[ABOVE] - params[BELOW]
     params[ABOVE_MEAN] = side_scale(r_above / max(q_above, 1e-9), s)
     params[BELOW_MEAN] = side_scale(r_below / max(q_below, 1e-9), s)
-    params[HELD] = min(0.99, max(0.01, (q_held + 0.5) / (q_held + q_fresh + 1.0)))
     params[HELD_SCALE] = max(TAU_FLOOR * max(s, sigma_floor), math.sqrt(r_held / max(q_held, 1e-9)))
-    params[ENTER] = min(0.98, max(0.002, (in_to_out + 0.5) / (n - from_out + 1.0)))
-    params[STAY] = min(0.995, max(0.02, (out_to_out + 0.5) / (from_out + 1.0)))
+    settle_labels(n, q_held, q_fresh, in_to_out, from_out, out_to_out, params)
     return True

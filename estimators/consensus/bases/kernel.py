@@ -7,7 +7,7 @@ from numba import types
 
 from estimators.arrays import BoolArray, FloatArray, IntArray
 from estimators.consensus.bases.shortlist import PER_OCTAVE, pick_starts, scale_gains
-from estimators.consensus.bases.weighing import acquit, fill_residual, weigh_candidates
+from estimators.consensus.bases.weighing import acquit_model, fill_residual, weigh_candidates
 from estimators.consensus.structure.finish import TABLE, fill_tables
 from estimators.consensus.structure.hypotheses import OCTAVES
 from estimators.kernels import kernel, ro
@@ -69,7 +69,7 @@ def find_basis(
         if scores[k] > scores[counts[1]]:
             counts[1] = k
     if found > 0:
-        acquit(columns, y, root_weight, sigma_floor, fixed, thetas[counts[1]], bank[counts[1]])
+        acquit_model(columns, y, root_weight, sigma_floor, fixed, thetas[counts[1]], bank[counts[1]])
     return found
 
 

@@ -14,18 +14,17 @@ import numpy as np
 
 from estimators.arrays import FloatArray
 from estimators.consensus.bases.filter import filter_step, start_mixture
+from estimators.consensus.structure.acquittal import ALONE_STEPS, acquit, forbid_contamination, start_alone
 from estimators.consensus.structure.criterion import CORRELATION_PRICE, IMPOSSIBLE
 from estimators.consensus.structure.mixture import (
     ABOVE,
     BELOW,
     CORRELATION,
-    ENTER,
     HELD_COUNT,
     INLIERS,
     LIKELIHOOD,
     SIGMA,
     SIZE,
-    STAY,
     TIME_SPREAD,
     UNIFORM,
 )
@@ -44,11 +43,7 @@ _SHARE = 0.5
 _HELD = 5.0
 _ONE_SIDE = 0.1
 _BOTH_SIDES = 3.0
-_NEVER = 1e-9
-_PARAMETERS = 3.0
-_SEARCHED = 0.7
-_SEARCHED_FEW = 1.1
-"""Prices as for the line (:mod:`estimators.consensus.structure`); those of the search per coefficient."""
+"""Prices as for the line (:mod:`estimators.consensus.structure.criterion`)."""
 
 
 @device
@@ -239,7 +234,7 @@ def _is_known(
 
 
 @device
-def acquit(
+def acquit_model(
     columns: FloatArray,
     y: FloatArray,
     root_weight: FloatArray,
@@ -255,9 +250,6 @@ def acquit(
     """
     p, n = columns.shape
     alone = params.copy()
-    alone[UNIFORM] = 1.0
-    alone[ABOVE] = alone[BELOW] = alone[CORRELATION] = 0.0
-    alone[ENTER], alone[STAY] = _NEVER, 0.5
     plain = np.zeros(p)
     residual = np.empty(n)
     gram = np.empty((p, p))
@@ -270,16 +262,8 @@ def acquit(
     square = 0.0
     for i in range(n):
         square += (residual[i] * root_weight[i]) ** 2
-    alone[SIGMA] = fixed if fixed > 0.0 else max(sigma_floor, math.sqrt(square / n))
-    em_steps(columns, y, root_weight, 0, sigma_floor, fixed, True, 3, plain, alone)
-    gain = params[LIKELIHOOD] - alone[LIKELIHOOD]
-    if params[CORRELATION] > 0.0:
-        gain -= CORRELATION_PRICE
-    if alone[CORRELATION] > 0.0:
-        gain += CORRELATION_PRICE
-    price = p * (_SEARCHED + _SEARCHED_FEW * (1.0 - params[INLIERS] / n))
-    if gain < price + _PARAMETERS * 0.5 * math.log(n):
+    start_alone(alone, fixed if fixed > 0.0 else max(sigma_floor, math.sqrt(square / n)))
+    forbid_contamination(alone)
+    em_steps(columns, y, root_weight, 0, sigma_floor, fixed, True, ALONE_STEPS, plain, alone)
+    if acquit(params, alone, p, n):
         theta[:] = plain
-        params[:] = alone
-        params[INLIERS] = n
-        params[HELD_COUNT] = 0.0

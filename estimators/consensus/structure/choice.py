@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from estimators.arrays import FloatArray, IntArray
+from estimators.consensus.structure.acquittal import ALONE_STEPS, acquit, forbid_contamination, start_alone
 from estimators.consensus.structure.candidates import (
     CANDIDATES,
     EVALUATIONS,
@@ -12,22 +13,17 @@ from estimators.consensus.structure.candidates import (
     find_candidates,
     patience,
 )
-from estimators.consensus.structure.criterion import CORRELATION_PRICE, IMPOSSIBLE, criterion, distance
+from estimators.consensus.structure.criterion import IMPOSSIBLE, criterion, distance
 from estimators.consensus.structure.em import em_step
 from estimators.consensus.structure.mixture import (
     ABOVE,
     BELOW,
-    CORRELATION,
-    ENTER,
-    HELD_COUNT,
     INLIERS,
     LEVEL,
-    LIKELIHOOD,
     SIGMA,
     SIZE,
     SLOPE,
-    STAY,
-    UNIFORM,
+    start_sides,
 )
 from estimators.kernels import device
 
@@ -42,19 +38,6 @@ _FIRST_STEPS = 3
 _LAST_STEPS = 3
 _LAST_ROUND = 3
 """Finalists that are fitted to the whole series."""
-_NEVER = 1e-9
-"""Chance of contamination where there is none."""
-_PARAMETERS = 3.0
-"""Parameters of contamination: how often it comes, how long it stays, what it looks like."""
-_SEARCHED = 1.4
-_SEARCHED_FEW = 2.2
-"""What the best of all structures gains on clean noise by having been searched for.
-
-It gains more the fewer readings it holds, since there are more few-point structures to choose from: at one
-price for all shares, a tenth of clean series of 50 points were taken for a line of less than a third of them.
-The two numbers are a compromise: higher ones turn down real structures of 10 points in 50, and the four
-giants of the star cluster CYG OB1 (Rousseeuw and Leroy 1987), which plain least squares follows.
-"""
 _APART = 2.0
 """Scales by which a runner-up must differ from the best line."""
 
@@ -93,7 +76,7 @@ def find_structure(
             if sides == 2 and f > 0:
                 break
             variant[:] = bank[finalists[f]]
-            _start_sides(variant, sides)
+            start_sides(variant, sides)
             score = _refine(
                 thin_t, thin_y, thin_root, sides, sigma_floor, fixed, _FIRST_STEPS, variant, counts
             )
@@ -114,12 +97,12 @@ def find_structure(
         else:
             scores[row] = IMPOSSIBLE
     if best >= 0:
-        _acquit(t, y, root_weight, sigma_floor, fixed, bank[best])
+        _acquit_line(t, y, root_weight, sigma_floor, fixed, bank[best])
     return best
 
 
 @device
-def _acquit(
+def _acquit_line(
     t: FloatArray,
     y: FloatArray,
     root_weight: FloatArray,
@@ -129,9 +112,7 @@ def _acquit(
 ) -> None:
     """Replace the best structure by plain least squares if contamination explains the series hardly better.
 
-    A mixture always takes a little of the tails of clean noise for contamination, and may take a part of a
-    clean series for its trend. Its parameters have to pay for themselves, by half a log n each (Schwarz
-    1978), against normal noise alone, correlated or not.
+    The least squares are those of normal noise alone, correlated or not.
     """
     n = t.size
     square = 0.0
@@ -139,27 +120,11 @@ def _acquit(
         r = (y[i] - params[LEVEL] - params[SLOPE] * t[i]) * root_weight[i]
         square += r * r
     alone = params.copy()
-    alone[SIGMA] = fixed if fixed > 0.0 else max(sigma_floor, np.sqrt(square / n))
-    alone[UNIFORM] = 1.0
-    alone[ABOVE] = 0.0
-    alone[BELOW] = 0.0
-    alone[CORRELATION] = 0.0
-    # The first steps find the line, its scale and its residuals' correlation; the last, their likelihood.
-    for _ in range(3):
-        alone[ENTER] = _NEVER
-        alone[STAY] = 0.5
+    start_alone(alone, fixed if fixed > 0.0 else max(sigma_floor, np.sqrt(square / n)))
+    for _ in range(ALONE_STEPS):
+        forbid_contamination(alone)
         em_step(t, y, root_weight, 0, sigma_floor, fixed, True, alone)
-    gain = params[LIKELIHOOD] - alone[LIKELIHOOD]
-    if params[CORRELATION] > 0.0:
-        gain -= CORRELATION_PRICE
-    if alone[CORRELATION] > 0.0:
-        gain += CORRELATION_PRICE
-    price = _SEARCHED + _SEARCHED_FEW * (1.0 - params[INLIERS] / n)
-    if gain < price + _PARAMETERS * 0.5 * np.log(n):
-        params[:] = alone
-        params[UNIFORM] = 1.0
-        params[INLIERS] = n
-        params[HELD_COUNT] = 0.0
+    acquit(params, alone, 2, n)
 
 
 @device
@@ -214,13 +179,3 @@ def _choose_finalists(
         finalists[heard] = broadest
         heard += 1
     return heard
-
-
-@device
-def _start_sides(params: FloatArray, sides: int) -> None:
-    """Turn off the sides that a finalist is tried without."""
-    if sides in (0, -1):
-        params[ABOVE] = 0.0
-    if sides in (0, 1):
-        params[BELOW] = 0.0
-    params[UNIFORM] = max(0.05, 1.0 - params[ABOVE] - params[BELOW])

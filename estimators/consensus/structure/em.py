@@ -21,7 +21,6 @@ from estimators.consensus.structure.mixture import (
     BELOW,
     BELOW_MEAN,
     CORRELATION,
-    CORRELATION_FLOOR,
     ENTER,
     HELD,
     HELD_COUNT,
@@ -38,6 +37,8 @@ from estimators.consensus.structure.mixture import (
     TAU_FLOOR,
     TIME_SPREAD,
     UNIFORM,
+    settle_correlation,
+    settle_labels,
     side_scale,
 )
 from estimators.kernels import device
@@ -102,16 +103,13 @@ def em_step(
     if inliers < _LEAST_INLIERS:
         params[LIKELIHOOD] = -1e300
         return
-    if correlate and filtered.lag_square > 0.0:
-        rho = filtered.lagged / filtered.lag_square
-        params[CORRELATION] = min(rho, 0.97) if rho > CORRELATION_FLOOR / math.sqrt(inliers) else 0.0
+    if correlate:
+        settle_correlation(filtered.lagged, filtered.lag_square, inliers, params)
     _update_free(residual, g_side, free, uniform, sides, params)
-    held, fresh = filtered.held, filtered.fresh
+    held = filtered.held
     least = TAU_FLOOR * params[SIGMA]
-    params[HELD] = min(0.99, max(0.01, (held + 0.5) / (held + fresh + 1.0)))
     params[HELD_SCALE] = max(least, math.sqrt(filtered.held_square / max(held, 1e-9)))
-    params[ENTER] = min(0.98, max(0.002, (filtered.in_to_out + 0.5) / (n - filtered.from_out + 1.0)))
-    params[STAY] = min(0.995, max(0.02, (filtered.out_to_out + 0.5) / (filtered.from_out + 1.0)))
+    settle_labels(n, held, filtered.fresh, filtered.in_to_out, filtered.from_out, filtered.out_to_out, params)
 
 
 @device

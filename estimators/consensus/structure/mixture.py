@@ -143,3 +143,37 @@ def side_scale(mean: float, s: float) -> float:
     c = SEPARATION * s
     half = 0.5 * (mean - 2.0 * c)
     return max(SIDE_FLOOR * s, half + math.sqrt(half * half + mean * c))
+
+
+@device
+def start_sides(params: FloatArray, sides: int) -> None:
+    """Turn off the sides that a finalist is tried without: 0 leaves none, 1 above, -1 below, 2 both."""
+    if sides in (0, -1):
+        params[ABOVE] = 0.0
+    if sides in (0, 1):
+        params[BELOW] = 0.0
+    params[UNIFORM] = max(0.05, 1.0 - params[ABOVE] - params[BELOW])
+
+
+@device
+def settle_labels(
+    n: int,
+    held: float,
+    fresh: float,
+    in_to_out: float,
+    from_out: float,
+    out_to_out: float,
+    params: FloatArray,
+) -> None:
+    """Set HELD, ENTER and STAY to what a filter over n readings summed up."""
+    params[HELD] = min(0.99, max(0.01, (held + 0.5) / (held + fresh + 1.0)))
+    params[ENTER] = min(0.98, max(0.002, (in_to_out + 0.5) / (n - from_out + 1.0)))
+    params[STAY] = min(0.995, max(0.02, (out_to_out + 0.5) / (from_out + 1.0)))
+
+
+@device
+def settle_correlation(lagged: float, lag_square: float, inliers: float, params: FloatArray) -> None:
+    """Set CORRELATION to that of neighbours that both follow the line; none where it is not told from 0."""
+    if lag_square > 0.0:
+        rho = lagged / lag_square
+        params[CORRELATION] = min(rho, 0.97) if rho > CORRELATION_FLOOR / math.sqrt(inliers) else 0.0

@@ -17,7 +17,8 @@ from estimators.inference.probability import inlier_probability
 from estimators.noise.resolution import Quantisation, find_quantisation
 from estimators.regression.influence import INLIERS
 from estimators.regression.least_squares import least_squares
-from estimators.result import Consensus, Estimate, NoFit, NoFitReason
+from estimators.result import Estimate, NoFit, NoFitReason
+from estimators.trends.account import account_of
 from estimators.trends.bases.curve import BasisCurve
 from estimators.trends.bases.design import Design, OwnColumn, frame_of
 from estimators.trends.bases.harmonics import first_seasons, more_harmonics, sharpest
@@ -226,20 +227,7 @@ def _answer(
         parameters=parameters,
         origin=origin,
         points=label_rows(series, found.inlier, probability, found.residual),
-        consensus=Consensus(
-            method=preset.name,
-            n=series.n,
-            inliers=inliers,
-            inlier_ratio=inliers / series.n,
-            threshold=found.threshold,
-            threshold_source=found.threshold_source,
-            sigma=found.sigma,
-            sigma_source=found.sigma_source,
-            ledger=found.ledger,
-            sampling_probability=found.sampling_probability,
-            search=found.search,
-            seed=request.seed,
-        ),
+        consensus=account_of(request, found, inliers),
         uncertainty=inferred.describe(request.level),
         p_value=_p_value(parameters.get("slope"), spread) if inferred.p_value is None else inferred.p_value,
         r2=r2,

@@ -14,7 +14,8 @@ from estimators.inference.probability import inlier_probability
 from estimators.inference.sandwich import LineUncertainty
 from estimators.noise.resolution import Quantisation, find_quantisation, scale_floor
 from estimators.regression.influence import SUPPORT, influence_sums
-from estimators.result import Consensus, NoFit, NoFitReason
+from estimators.result import NoFit, NoFitReason
+from estimators.trends.account import account_of
 from estimators.trends.exponential.additive import AdditiveFit, find_additive
 from estimators.trends.exponential.curve import ExponentialCurve
 from estimators.trends.exponential.multiplicative import fit_multiplicative
@@ -89,20 +90,7 @@ def _fit(request: Request, curves: tuple[ExponentialCurve, ...]) -> Trend | NoFi
         parameters=curve.parameters(0.0, request.level, dof),
         origin=series.axis.origin,
         points=label_rows(series, inlier, probability, residual),
-        consensus=Consensus(
-            method=request.preset.name,
-            n=series.n,
-            inliers=inliers,
-            inlier_ratio=inliers / series.n,
-            threshold=own.threshold,
-            threshold_source=own.threshold_source,
-            sigma=own.sigma,
-            sigma_source=own.sigma_source,
-            ledger=own.ledger,
-            sampling_probability=own.sampling_probability,
-            search=own.search,
-            seed=request.seed,
-        ),
+        consensus=account_of(request, own, inliers),
         uncertainty=inferred.describe(request.level),
         p_value=two_sided_p(_statistic(curve), dof) if inferred.p_value is None else inferred.p_value,
         r2=r2,

@@ -9,7 +9,7 @@ from estimators.arrays import FloatArray
 from estimators.consensus.structure.criterion import IMPOSSIBLE, criterion
 from estimators.consensus.structure.finish import TABLE, fill_tables
 from estimators.consensus.structure.frame import thin
-from estimators.consensus.structure.mixture import ABOVE, BELOW, SIGMA, start
+from estimators.consensus.structure.mixture import ABOVE, BELOW, SIGMA, start, start_sides
 from estimators.kernels import device, kernel, ro
 from estimators.trends.exponential.proposals import (
     PROPOSED,
@@ -26,7 +26,6 @@ from estimators.trends.exponential.weighing import (
     linearise,
     newton_curve,
     refine_curve,
-    start_sides,
 )
 
 PROPOSE_FROM = 300

@@ -11,23 +11,16 @@ from __future__ import annotations
 import numpy as np
 
 from estimators.arrays import FloatArray
-from estimators.consensus.structure.criterion import CORRELATION_PRICE, IMPOSSIBLE, criterion
+from estimators.consensus.structure.acquittal import ALONE_STEPS, acquit, forbid_contamination, start_alone
+from estimators.consensus.structure.criterion import IMPOSSIBLE, criterion
 from estimators.consensus.structure.em import em_step
 from estimators.consensus.structure.finish import TABLE, fill_tables, newton_step, newton_sums
 from estimators.consensus.structure.mixture import (
-    ABOVE,
-    BELOW,
-    CORRELATION,
-    ENTER,
-    HELD_COUNT,
-    INLIERS,
     LEVEL,
     LIKELIHOOD,
     SIGMA,
     SIZE,
     SLOPE,
-    STAY,
-    UNIFORM,
 )
 from estimators.kernels import device
 from estimators.trends.exponential.proposals import STEEPEST, bounded_exp, fill_residuals
@@ -39,11 +32,6 @@ SLOTS = SIZE + 2
 
 _LARGEST_TURN = 1.0
 """Change of the rate in one step, in the frame or in units of the rate: where linearisation holds."""
-_NEVER = 1e-9
-_PARAMETERS = 3.0
-_SEARCHED = 1.4
-_SEARCHED_FEW = 2.2
-"""As for lines (:mod:`estimators.consensus.structure.choice`): what contamination has to pay for itself."""
 
 
 @device
@@ -137,16 +125,6 @@ def refine_curve(
 
 
 @device
-def start_sides(params: FloatArray, sides: int) -> None:
-    """Turn off the sides that a finalist is tried without."""
-    if sides in (0, -1):
-        params[ABOVE] = 0.0
-    if sides in (0, 1):
-        params[BELOW] = 0.0
-    params[UNIFORM] = max(0.05, 1.0 - params[ABOVE] - params[BELOW])
-
-
-@device
 def acquit_curve(
     t: FloatArray,
     y: FloatArray,
@@ -169,24 +147,10 @@ def acquit_curve(
     square = 0.0
     for i in range(n):
         square += (residual[i] * root_weight[i]) ** 2
-    alone[SIGMA] = fixed if fixed > 0.0 else max(sigma_floor, np.sqrt(square / n))
-    start_sides(alone, 0)
-    alone[UNIFORM] = 1.0
-    alone[CORRELATION] = 0.0
-    for _ in range(3):
+    start_alone(alone, fixed if fixed > 0.0 else max(sigma_floor, np.sqrt(square / n)))
+    for _ in range(ALONE_STEPS):
         alone[LEVEL] = 0.0
         alone[SLOPE] = 0.0
-        alone[ENTER] = _NEVER
-        alone[STAY] = 0.5
+        forbid_contamination(alone)
         em_step(t, residual, root_weight, 0, sigma_floor, fixed, True, alone)
-    gain = params[LIKELIHOOD] - alone[LIKELIHOOD]
-    if params[CORRELATION] > 0.0:
-        gain -= CORRELATION_PRICE
-    if alone[CORRELATION] > 0.0:
-        gain += CORRELATION_PRICE
-    price = _SEARCHED + _SEARCHED_FEW * (1.0 - params[INLIERS] / n)
-    if gain < price + _PARAMETERS * 0.5 * np.log(n):
-        params[:] = alone
-        params[UNIFORM] = 1.0
-        params[INLIERS] = n
-        params[HELD_COUNT] = 0.0
+    acquit(params, alone, 2, n)

@@ -18,8 +18,9 @@ from estimators.inference.scores import point_scores
 from estimators.noise.resolution import Quantisation, find_quantisation, scale_floor
 from estimators.options import RobustOptions
 from estimators.regression.influence import INLIERS, influence_sums
-from estimators.result import Consensus, NoFit, NoFitReason
+from estimators.result import NoFit, NoFitReason
 from estimators.series import Series
+from estimators.trends.account import account_of
 from estimators.trends.labels import label_rows
 from estimators.trends.line.frame import Frame, line_geometry, line_parameters
 from estimators.trends.observations import Evidence, collect_notices
@@ -86,20 +87,7 @@ def fit_line(request: Request) -> Trend | NoFit:
         parameters=parameters,
         origin=origin,
         points=label_rows(series, found.inlier, probability, found.residual),
-        consensus=Consensus(
-            method=preset.name,
-            n=series.n,
-            inliers=inliers,
-            inlier_ratio=inliers / series.n,
-            threshold=found.threshold,
-            threshold_source=found.threshold_source,
-            sigma=found.sigma,
-            sigma_source=found.sigma_source,
-            ledger=found.ledger,
-            sampling_probability=found.sampling_probability,
-            search=found.search,
-            seed=seed,
-        ),
+        consensus=account_of(request, found, inliers),
         uncertainty=inferred.describe(request.level),
         p_value=p_value,
         r2=r2,
