@@ -32,6 +32,8 @@ from estimators.trends.trend import Trend
 _DEGREE = 2
 _FINEST = 1e-9
 """Least noise scale in units of the range of the values: finer ones are all called exact."""
+_LEAST_READING = 1e-150
+"""In the scale of the data; below, a reading is as good as zero, which has no logarithm."""
 _IMPOSSIBLE = 1e6
 _CHANCE = 2.0
 """Price of a coefficient in ln n, times the share of the points that do not follow the curve."""
@@ -125,7 +127,7 @@ def _of_logarithms(y: FloatArray, fitted: FloatArray) -> tuple[FloatArray, Float
     A density of residuals times the second is one of values. Values that have no logarithm are impossible
     under this noise: outliers.
     """
-    possible = (np.sign(y) * np.sign(fitted) > 0.0) & np.isfinite(fitted)
+    possible = (np.minimum(y * np.sign(fitted), np.abs(fitted)) > _LEAST_READING) & np.isfinite(fitted)
     size = np.where(possible, np.abs(y), 1.0)
     ratio = np.where(possible, y / np.where(possible, fitted, 1.0), 1.0)
     residual = np.where(possible, size * np.log(ratio), _IMPOSSIBLE)

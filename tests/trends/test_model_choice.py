@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from estimators import InputError, NoFit, Trend, fit_trend
 from estimators.arrays import FloatArray
@@ -115,3 +117,9 @@ def test_what_only_one_shape_takes_is_refused() -> None:
 
 def test_three_readings_far_apart_overflow_nothing() -> None:
     assert fit_trend(np.array([1.0, 1026.0, 0.0]), np.array([2.0, 0.0, 1.0]), model="auto")
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.lists(st.floats(-1e60, 1e60), min_size=2, max_size=6))
+def test_no_reading_however_small_breaks_the_choice(values: list[float]) -> None:
+    assert fit_trend(np.arange(float(len(values))), np.array(values), model="auto") is not None

@@ -30,6 +30,7 @@ from estimators.trends.trend import RunnerUp, Trend
 
 _LEAST_POINTS = 4
 """Readings from which the noise can be told at all: two of them fix the curve."""
+_NEGLIGIBLE = 1e-60
 _WEIGHED = 2000
 """Readings, spread over the series, by which the noise is told."""
 
@@ -62,6 +63,7 @@ def fit_exponential(request: Request) -> Trend | NoFit:
         If the arguments contradict one another.
     """
     _check(request)
+    request = _without_negligible(request)
     refused = _refuse(request.series)
     if refused is not None:
         return refused
@@ -104,6 +106,16 @@ def _check(request: Request) -> None:
                     "say what noise it belongs to: noise='additive' (in units of the values) or "
                     "noise='multiplicative' (of ln(value))",
                 )
+
+
+def _without_negligible(request: Request) -> Request:
+    """Take for zero what is nothing beside the largest value: divisions by it would overflow."""
+    y = request.series.y
+    negligible = np.abs(y) < _NEGLIGIBLE * np.abs(y).max(initial=0.0)
+    if not np.any(negligible & (y != 0.0)):
+        return request
+    series = dataclasses.replace(request.series, y=np.where(negligible, 0.0, y))
+    return dataclasses.replace(request, series=series)
 
 
 def _refuse(series: Series) -> NoFit | None:
