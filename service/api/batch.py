@@ -30,7 +30,7 @@ from service.errors import Problem, ProblemType
 from service.observability.metrics import Metrics
 from service.observability.timing import Stopwatch
 from service.schemas.batch import BatchAnswer, BatchQuery
-from service.schemas.problems import problem_responses
+from service.schemas.responses import computed_responses
 from service.settings import Settings
 
 router = APIRouter(tags=["trends"])
@@ -55,37 +55,15 @@ ANSWER_SCHEMAS: dict[str, dict[str, Any]] = {
     writer.media_type: {"schema": {"type": "string"}} for writer in WRITERS if writer.name != "json"
 }
 
-RESPONSES: dict[int | str, dict[str, Any]] = {
-    200: {
-        "model": BatchAnswer,
-        "description": "One row per series, in the format asked for by `format` or `Accept`; a series "
-        "without a trend is a row with its reason. A streamed answer (NDJSON) that cannot be finished "
-        "ends with a line that is a problem.",
-        "content": ANSWER_SCHEMAS,
-        "headers": {
-            "Server-Timing": {
-                "description": "Milliseconds of the phases parse, queue, fit and encode, as far as they are "
-                "over when the answer begins.",
-                "schema": {"type": "string"},
-            }
-        },
-    },
-    **problem_responses(
-        ProblemType.malformed_body,
-        ProblemType.empty_body,
-        ProblemType.not_acceptable,
-        ProblemType.request_timeout,
-        ProblemType.body_too_large,
-        ProblemType.too_many_points,
-        ProblemType.too_many_series,
-        ProblemType.unsupported_media_type,
-        ProblemType.invalid_value,
-        ProblemType.unknown_field,
-        ProblemType.busy,
-        ProblemType.not_ready,
-        ProblemType.deadline_exceeded,
-    ),
-}
+RESPONSES = computed_responses(
+    BatchAnswer,
+    "One row per series, in the format asked for by `format` or `Accept`; a series without a trend is a row "
+    "with its reason. A streamed answer (NDJSON) that cannot be finished ends with a line that is a problem.",
+    ANSWER_SCHEMAS,
+    ProblemType.too_many_series,
+    timing="Milliseconds of the phases parse, queue, fit and encode, as far as they are over when the answer "
+    "begins.",
+)
 
 Emit = Callable[[bytes], None]
 Job = Callable[[Patience, Emit], int]

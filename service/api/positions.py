@@ -27,7 +27,7 @@ from service.observability.timing import Stopwatch
 from service.schemas.answers import MethodAnswer
 from service.schemas.fixes import PositionAnswer, PositionMethodsAnswer, PositionsAnswer
 from service.schemas.position_query import PositionQuery
-from service.schemas.problems import problem_responses
+from service.schemas.responses import computed_responses
 from service.security.headers import PICTURE_POLICY
 from service.settings import Settings
 
@@ -78,36 +78,13 @@ ANSWER_SCHEMAS: dict[str, dict[str, Any]] = {
     }
 }
 
-RESPONSES: dict[int | str, dict[str, Any]] = {
-    200: {
-        "model": PositionAnswer | PositionsAnswer,
-        "description": "The position, or with `time` the positions, in the format asked for by `format` or "
-        "`Accept`.",
-        "content": ANSWER_SCHEMAS,
-        "headers": {
-            "Server-Timing": {
-                "description": "Milliseconds of the phases parse, queue, fit and encode.",
-                "schema": {"type": "string"},
-            }
-        },
-    },
-    **problem_responses(
-        ProblemType.malformed_body,
-        ProblemType.empty_body,
-        ProblemType.not_acceptable,
-        ProblemType.request_timeout,
-        ProblemType.body_too_large,
-        ProblemType.too_many_points,
-        ProblemType.unsupported_media_type,
-        ProblemType.invalid_value,
-        ProblemType.unknown_field,
-        ProblemType.no_position,
-        ProblemType.not_installed,
-        ProblemType.busy,
-        ProblemType.not_ready,
-        ProblemType.deadline_exceeded,
-    ),
-}
+RESPONSES = computed_responses(
+    PositionAnswer | PositionsAnswer,
+    "The position, or with `time` the positions, in the format asked for by `format` or `Accept`.",
+    ANSWER_SCHEMAS,
+    ProblemType.no_position,
+    ProblemType.not_installed,
+)
 
 
 @router.post(

@@ -19,7 +19,7 @@ from service.observability.metrics import Metrics
 from service.observability.timing import Stopwatch
 from service.schemas.answers import TrendAnswer
 from service.schemas.options import FitArguments, TrendOptions, TrendQuery
-from service.schemas.problems import problem_responses
+from service.schemas.responses import computed_responses
 from service.security.headers import PICTURE_POLICY
 from service.settings import Settings
 
@@ -44,34 +44,12 @@ ANSWER_SCHEMAS: dict[str, dict[str, Any]] = {
     writer.media_type: {"schema": {"type": "string"}} for writer in WRITERS if writer.name != "json"
 }
 
-RESPONSES: dict[int | str, dict[str, Any]] = {
-    200: {
-        "model": TrendAnswer,
-        "description": "The trend, in the format asked for by `format` or `Accept`.",
-        "content": ANSWER_SCHEMAS,
-        "headers": {
-            "Server-Timing": {
-                "description": "Milliseconds of the phases parse, queue, fit and encode.",
-                "schema": {"type": "string"},
-            }
-        },
-    },
-    **problem_responses(
-        ProblemType.malformed_body,
-        ProblemType.empty_body,
-        ProblemType.not_acceptable,
-        ProblemType.request_timeout,
-        ProblemType.body_too_large,
-        ProblemType.too_many_points,
-        ProblemType.unsupported_media_type,
-        ProblemType.invalid_value,
-        ProblemType.unknown_field,
-        ProblemType.no_fit,
-        ProblemType.busy,
-        ProblemType.not_ready,
-        ProblemType.deadline_exceeded,
-    ),
-}
+RESPONSES = computed_responses(
+    TrendAnswer,
+    "The trend, in the format asked for by `format` or `Accept`.",
+    ANSWER_SCHEMAS,
+    ProblemType.no_fit,
+)
 
 
 @router.post(
