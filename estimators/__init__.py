@@ -9,6 +9,8 @@ from estimators.gnss.fix import Fix
 from estimators.gnss.locate import locate
 from estimators.gnss.methods.registry import POSITION_METHODS, PositionMethod
 from estimators.gnss.options import PositionOptions
+from estimators.gnss.orbits import states as _states  # noqa: F401  # kernels that only readers of files call
+from estimators.gnss.raw import correct_ranges
 from estimators.gnss.series.epochs import Epoch, Epochs
 from estimators.gnss.series.fixes import EpochFix, Fixes
 from estimators.gnss.series.locate_series import locate_series
@@ -50,6 +52,7 @@ __all__ = [
     "TrendModel",
     "TrendTable",
     "__version__",
+    "correct_ranges",
     "fit_trend",
     "fit_trends",
     "locate",

@@ -218,6 +218,11 @@ def warm() -> Iterator[tuple[int, int, str]]:
         yield done, total, entry.name
 
 
+def declared() -> tuple[str, ...]:
+    """Names of the kernels declared so far."""
+    return tuple(entry.name for entry in _REGISTRY)
+
+
 def is_warm() -> bool:
     """Whether every declared kernel is loaded."""
     return all(entry.is_loaded for entry in _REGISTRY)

@@ -118,7 +118,8 @@ def _fetch_wheels() -> None:
     (project,) = (WORK / "project").glob("plumbline-*.whl")
     _run(
         *(*pip, "download", "--dest", str(WORK / "wheels"), "--only-binary=:all:"),
-        *("--python-version", version, "--constraint", "constraints.txt", f"{project}[service]", "hatchling"),
+        *("--python-version", version, "--constraint", "constraints.txt", f"{project}[service,rinex]"),
+        "hatchling",
     )
     (WORK / "wheels" / project.name).unlink()
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -37,3 +39,16 @@ def test_code_that_was_edited_while_the_process_ran_is_not_cached(
     entry.load()
     assert entry.is_loaded
     assert not list(tmp_path.iterdir())
+
+
+def test_importing_the_library_declares_every_kernel() -> None:
+    script = (
+        "import importlib, pkgutil, estimators\n"
+        "from estimators import kernels\n"
+        "at_once = kernels.declared()\n"
+        "for module in pkgutil.walk_packages(estimators.__path__, 'estimators.'):\n"
+        "    importlib.import_module(module.name)\n"
+        "print(*sorted(set(kernels.declared()) - set(at_once)))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == ""
