@@ -18,6 +18,10 @@ from estimators.gnss.series.stream import locate_stream
 from estimators.notices import Notice, NoticeCode
 from estimators.options import RobustOptions
 from estimators.result import Estimate, NoFit, NoFitReason
+from estimators.trajectories.clean import clean_trajectory
+from estimators.trajectories.methods import TRACK_METHODS, TrackMethod
+from estimators.trajectories.options import TrackOptions
+from estimators.trajectories.track import Track
 from estimators.trends.fit import fit_trend
 from estimators.trends.many import fit_trends
 from estimators.trends.models import MODELS, TrendModel
@@ -48,10 +52,14 @@ __all__ = [
     "Preset",
     "Regime",
     "RobustOptions",
+    "Track",
+    "TrackMethod",
+    "TrackOptions",
     "Trend",
     "TrendModel",
     "TrendTable",
     "__version__",
+    "clean_trajectory",
     "correct_ranges",
     "fit_trend",
     "fit_trends",
@@ -61,6 +69,7 @@ __all__ = [
     "methods",
     "models",
     "position_methods",
+    "track_methods",
 ]
 
 __version__ = version("plumbline")
@@ -79,3 +88,8 @@ def models() -> Mapping[str, TrendModel]:
 def position_methods() -> Mapping[str, PositionMethod]:
     """Return the methods of fault exclusion, ``auto`` first: what ``method=`` of :func:`locate` takes."""
     return POSITION_METHODS
+
+
+def track_methods() -> Mapping[str, TrackMethod]:
+    """Return the methods of cleaning, ``auto`` first: what ``method=`` of :func:`clean_trajectory` takes."""
+    return TRACK_METHODS

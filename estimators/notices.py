@@ -37,6 +37,14 @@ class NoticeCode(StrEnum):
     unbounded_error = "unbounded_error"
     inconsistent_ranges = "inconsistent_ranges"
     satellites_below_mask = "satellites_below_mask"
+    few_fixes = "few_fixes"
+    drift_unobservable = "drift_unobservable"
+    sampling_too_sparse = "sampling_too_sparse"
+    mostly_faulty = "mostly_faulty"
+    clock_jumped = "clock_jumped"
+    stale_positions = "stale_positions"
+    long_gaps = "long_gaps"
+    invalid_rows = "invalid_rows"
 
 
 NOTICE_MEANINGS: Mapping[NoticeCode, str] = {
@@ -84,6 +92,18 @@ NOTICE_MEANINGS: Mapping[NoticeCode, str] = {
     ),
     NoticeCode.inconsistent_ranges: "The ranges that are used disagree by more than their noise.",
     NoticeCode.satellites_below_mask: "Satellites under the elevation mask take no part.",
+    NoticeCode.few_fixes: "So few fixes that faults can hardly be told from motion.",
+    NoticeCode.drift_unobservable: (
+        "Errors that change slowly look like motion; what the positions share of them stays in the track."
+    ),
+    NoticeCode.sampling_too_sparse: (
+        "Between two fixes the track can go farther than faults are large; small faults go unnoticed."
+    ),
+    NoticeCode.mostly_faulty: "A large share of the fixes disagrees with the track that the others make.",
+    NoticeCode.clock_jumped: "The clock jumped there and back; rows between are put where the file has them.",
+    NoticeCode.stale_positions: "Some rows repeat an old position while the track moves on.",
+    NoticeCode.long_gaps: "There are gaps over which the motion cannot be foretold.",
+    NoticeCode.invalid_rows: "Rows without a time, or without a place on Earth, take no part.",
 }
 
 
@@ -98,6 +118,20 @@ POSITION_NOTICES = frozenset(
     }
 )
 """Notices that only positions give."""
+
+TRACK_NOTICES = frozenset(
+    {
+        NoticeCode.few_fixes,
+        NoticeCode.drift_unobservable,
+        NoticeCode.sampling_too_sparse,
+        NoticeCode.mostly_faulty,
+        NoticeCode.clock_jumped,
+        NoticeCode.stale_positions,
+        NoticeCode.long_gaps,
+        NoticeCode.invalid_rows,
+    }
+)
+"""Notices that only tracks give."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from estimators import Notice, NoticeCode, RobustOptions
-from estimators.notices import POSITION_NOTICES
+from estimators.notices import POSITION_NOTICES, TRACK_NOTICES
 from tests.trends.contaminated import contaminated, fitted, two_lines
 
 T = np.arange(100.0)
@@ -58,7 +58,10 @@ CASES: dict[NoticeCode, Callable[[], Iterable[Notice]]] = {
 }
 
 
-@pytest.mark.parametrize("code", [code for code in NoticeCode if code not in POSITION_NOTICES])
+ELSEWHERE = POSITION_NOTICES | TRACK_NOTICES
+
+
+@pytest.mark.parametrize("code", [code for code in NoticeCode if code not in ELSEWHERE])
 def test_every_notice_occurs_where_it_should(code: NoticeCode) -> None:
     found = {item.code: item for item in CASES[code]()}
     assert code in found

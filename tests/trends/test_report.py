@@ -6,7 +6,7 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
-from estimators.notices import NOTICE_MEANINGS, POSITION_NOTICES, NoticeCode, notice
+from estimators.notices import NOTICE_MEANINGS, POSITION_NOTICES, TRACK_NOTICES, NoticeCode, notice
 from estimators.trends.presentation.layout import WIDTH, to_html, to_text
 from estimators.trends.presentation.report import describe
 from estimators.trends.trend import RunnerUp
@@ -145,7 +145,10 @@ def test_many_predictions_are_counted_not_all_listed() -> None:
     assert "First 10 of 50 predictions" in text
 
 
-@pytest.mark.parametrize("code", [code for code in NoticeCode if code not in POSITION_NOTICES])
+ELSEWHERE = POSITION_NOTICES | TRACK_NOTICES
+
+
+@pytest.mark.parametrize("code", [code for code in NoticeCode if code not in ELSEWHERE])
 def test_every_notice_says_what_it_means_and_what_to_do(code: NoticeCode) -> None:
     trend = made_trend(
         [0.0, 1.0, 2.0], [1.0, 3.0, 5.0], slope=2.0, level=1.0, notices=(notice(code, count=4),)

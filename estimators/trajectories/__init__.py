@@ -1,0 +1,1 @@
+"""Trajectories: which fixes of a track lie, and where it really went."""

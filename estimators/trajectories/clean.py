@@ -1,0 +1,142 @@
+"""``clean_trajectory``: from a caller's rows to a :class:`Track`."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.special import ndtri
+
+from estimators.arrays import ArrayLike, FloatArray, InputError, Reason
+from estimators.result import NoFit, NoFitReason, Points
+from estimators.trajectories.assemble import assemble
+from estimators.trajectories.estimation import Measured
+from estimators.trajectories.labelling.modes import MISSING
+from estimators.trajectories.methods import TRACK_METHODS, Labelled
+from estimators.trajectories.options import TrackOptions
+from estimators.trajectories.reasons import FixReason
+from estimators.trajectories.rows import Rows, read_rows
+from estimators.trajectories.smoothing.rts import smooth_track
+from estimators.trajectories.smoothing.solved import Solved
+from estimators.trajectories.track import Track
+
+
+def clean_trajectory(
+    t_s: ArrayLike,
+    lat_deg: ArrayLike,
+    lon_deg: ArrayLike,
+    *,
+    height_m: ArrayLike | None = None,
+    accuracy_m: ArrayLike | None = None,
+    method: str = "auto",
+    level: float = 0.95,
+    options: TrackOptions | None = None,
+) -> Track | NoFit:
+    """Say which fixes of a track lie, and where it really went.
+
+    Every fix gets a label, for the whole track at once: a burst of multipath that fills its own window is
+    still off from what came before and after. The track is then smoothed under these labels; noise, motion
+    and the rates of faults are estimated, nothing has to be known.
+
+    Parameters
+    ----------
+    t_s : array_like, shape (n,)
+        Seconds, datetime64, ``datetime`` or ISO 8601; any order; NaN, NaT and None are missing.
+    lat_deg, lon_deg : array_like, shape (n,)
+        Degrees; longitudes from -180 to 360. Rows elsewhere are ``invalid``.
+    height_m : array_like, shape (n,), optional
+        Metres; may have gaps.
+    accuracy_m : array_like, shape (n,), optional
+        Radius about each fix that holds 68 % as the receiver reports it; only its proportions count.
+    method : str
+        ``auto`` (default) or another of :func:`estimators.track_methods`.
+    level : float
+        Confidence level of intervals (default 0.95).
+    options : TrackOptions, optional
+
+    Returns
+    -------
+    Track or NoFit
+        ``NoFit`` if no row has both a time and a place on Earth, or all have one time and different places.
+
+    Raises
+    ------
+    InputError
+        If columns differ in length or hold no numbers, or a setting is out of range.
+
+    Notes
+    -----
+    The same input gives the same bytes. METHODS_TRACKS describes the composition and what it reaches.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(60.0)
+    >>> rng = np.random.default_rng(1)
+    >>> lat = 48.0 + 1e-4 * t + 2e-5 * rng.normal(size=60)
+    >>> lon = 11.0 + 3e-5 * rng.normal(size=60)
+    >>> lat[30] += 0.01
+    >>> track = clean_trajectory(t, lat, lon)
+    >>> track.points.reason[29:32]
+    ['ok', 'spike', 'ok']
+    """
+    if method not in TRACK_METHODS:
+        raise InputError("method", f"unknown method {method!r}; choose one of {', '.join(TRACK_METHODS)}")
+    if isinstance(level, bool) or not 0.0 < level < 1.0:
+        raise InputError("level", "must lie between 0 and 1, both excluded")
+    options = options or TrackOptions()
+    rows = read_rows(t_s, lat_deg, lon_deg, height_m, accuracy_m)
+    refused = _refuse(rows)
+    if refused is not None:
+        return refused
+    kept = rows.measures
+    measured = Measured(
+        np.ascontiguousarray(rows.t[kept]),
+        np.ascontiguousarray(rows.fixes[kept]),
+        None if rows.reported is None else np.ascontiguousarray(rows.reported[kept]),
+    )
+    labelled = TRACK_METHODS[method].labeller(measured, options)
+    solved = _smooth(rows, labelled)
+    return assemble(rows, measured, labelled, solved, method, options, level, float(ndtri(0.5 + 0.5 * level)))
+
+
+def _smooth(rows: Rows, labelled: Labelled) -> Solved:
+    """Smooth at every time, through rows that measure nothing too."""
+    m, parameters = rows.t.size, labelled.parameters
+    labels = np.full(m, MISSING, dtype=np.uint8)
+    labels[rows.measures] = labelled.labels
+    variance = Measured(rows.t, rows.fixes, rows.reported).variance(parameters)
+    states, covariances = np.zeros((m, 2, 3)), np.zeros((m, 3, 3))
+    smooth_track(
+        rows.t,
+        rows.fixes,
+        variance,
+        parameters.colour_m,
+        parameters.manoeuvre,
+        parameters.rates.as_array(),
+        labels,
+        states,
+        covariances,
+    )
+    return Solved(labels, variance, states, covariances)
+
+
+def _refuse(rows: Rows) -> NoFit | None:
+    fixes = int(rows.measures.sum())
+    if fixes == 0:
+        message = (
+            "no row has both a time and a place on Earth; give times in t_s, degrees in lat_deg and lon_deg"
+        )
+        return _no_fit(rows, NoFitReason.no_data, message)
+    moments = rows.t[rows.measures]
+    if fixes > 1 and not moments[-1] > moments[0]:
+        message = "all fixes have the same time and different places; give the time of each"
+        return _no_fit(rows, NoFitReason.constant_time, message)
+    return None
+
+
+def _no_fit(rows: Rows, reason: NoFitReason, message: str) -> NoFit:
+    n = rows.codes.size
+    unknown: FloatArray = np.full(n, math.nan)
+    codes = np.where(rows.codes == FixReason.invalid, Reason.invalid, Reason.ok).astype(np.uint8)
+    return NoFit(reason, message, Points(np.zeros(n, dtype=np.bool_), unknown, unknown.copy(), codes))

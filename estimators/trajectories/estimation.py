@@ -1,0 +1,235 @@
+"""Parameters of a track by their evidence: the likelihood of the labelled track, and wide priors.
+
+The likelihood knows the labels' doubts, so that it does not take a burst for a manoeuvre nor noise for
+spikes; least squares on differences only says where to start (:mod:`estimators.trajectories.spans`). A long
+track is judged by windows of it, and with a narrower beam than it is labelled with.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from estimators.arrays import BoolArray, CodeArray, FloatArray
+from estimators.trajectories.labelling.beam import HOPELESS, WIDTH, label_track
+from estimators.trajectories.labelling.modes import BURST, ENTRY, LEVEL_STRIDE, REDRAW, SPIKE, WIDE
+from estimators.trajectories.parameters import Rates, TrackParameters
+from estimators.trajectories.spans import PRIOR_LOG, PRIOR_SPREAD, start_from_spans
+
+WINDOW = 128
+WINDOWS = 4
+"""A track of more fixes than both together is judged by so many windows of so many fixes."""
+_UNIT, _STRIDES = 0.23, (4, 2, 1)
+"""Of logarithms: factors of 2.5 at first, of 1.26 at last."""
+_MOST_RUNS = 80
+_REPORTED_LOG, _REPORTED_SPREAD = np.log(0.66), 0.4
+"""White noise in units of a reported 68 % radius; 1/1.515 for two normal axes."""
+_LEAST_LOG, _LARGEST_LOG = np.log([1e-2, 1e-2, 1e-6]), np.log([1e4, 1e3, 1e4])
+_ROUNDS = 2
+_WIDTH, _HOPELESS = 6, 10.0
+"""Of the beam while parameters are sought."""
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """Fixes that measure something, in order of time.
+
+    Attributes
+    ----------
+    t : ndarray, shape (n,)
+        Seconds.
+    fixes : ndarray, shape (n, 2)
+        East and north, metres.
+    reported : ndarray, shape (n,), or None
+        Radii that hold 68 % as the receiver reports them, metres.
+    """
+
+    t: FloatArray
+    fixes: FloatArray
+    reported: FloatArray | None
+
+    def variance(self, parameters: TrackParameters) -> FloatArray:
+        """Variance of white noise per axis and fix."""
+        unit = np.ones(self.t.size) if self.reported is None else self.reported
+        return np.ascontiguousarray((parameters.sigma * unit) ** 2)
+
+    def window(self, first: int, last: int) -> Measured:
+        """Give some fixes on end."""
+        part = slice(first, last)
+        return Measured(
+            self.t[part], self.fixes[part], None if self.reported is None else self.reported[part]
+        )
+
+    def backward(self) -> Measured:
+        """Give the track as it is read backward."""
+        return Measured(
+            np.ascontiguousarray(-self.t[::-1]),
+            np.ascontiguousarray(self.fixes[::-1]),
+            None if self.reported is None else np.ascontiguousarray(self.reported[::-1]),
+        )
+
+    def where(self, chosen: BoolArray) -> Measured:
+        """Give the chosen fixes."""
+        return Measured(
+            self.t[chosen], self.fixes[chosen], None if self.reported is None else self.reported[chosen]
+        )
+
+
+def label(
+    measured: Measured,
+    parameters: TrackParameters,
+    lag: int = 0,
+    *,
+    width: int = WIDTH,
+    hopeless: float = HOPELESS,
+    top_speed: float = np.inf,
+) -> tuple[CodeArray, FloatArray, float]:
+    """Label fixes under given parameters.
+
+    Returns
+    -------
+    labels : ndarray of uint8, shape (n,)
+    probability : ndarray, shape (n,)
+        Of each fix to be good; 1 without a lag.
+    evidence : float
+        Log likelihood.
+    """
+    n = measured.t.size
+    labels, probability = np.zeros(n, dtype=np.uint8), np.ones(n)
+    evidence = label_track(
+        measured.t,
+        measured.fixes,
+        measured.variance(parameters),
+        parameters.colour_m,
+        parameters.manoeuvre,
+        parameters.rates.as_array(),
+        lag,
+        width,
+        hopeless,
+        top_speed,
+        labels,
+        probability,
+    )
+    return labels, probability, evidence
+
+
+def estimate(measured: Measured, sigma_m: float | None = None, top_speed: float = np.inf) -> TrackParameters:
+    """Find noise, motion and rates of a track.
+
+    Parameters
+    ----------
+    measured : Measured
+        At least two fixes.
+    sigma_m : float, optional
+        Standard deviation of white noise per axis, of a fix of median reported accuracy; it is then kept.
+    top_speed : float
+        m/s.
+    """
+    windows = _windows(measured)
+    rates = Rates()
+    mean, spread = PRIOR_LOG.copy(), PRIOR_SPREAD.copy()
+    if measured.reported is not None:
+        mean[0], spread[0] = _REPORTED_LOG, _REPORTED_SPREAD
+    axes: tuple[int, ...] = (2, 0, 1)
+    if sigma_m is not None:
+        unit = 1.0 if measured.reported is None else float(np.median(measured.reported))
+        mean[0] = np.log(sigma_m / unit)
+        axes = (2, 1)
+
+    def evidence(logs: FloatArray, rough: bool) -> float:
+        parameters = _parameters(logs, rates)
+        some = windows[:: 2 if rough else 1]
+        likelihood = sum(
+            label(window, parameters, width=_WIDTH, hopeless=_HOPELESS, top_speed=top_speed)[2]
+            for window in some
+        )
+        likelihood *= len(windows) / len(some)
+        return float(likelihood - 0.5 * np.sum(((logs - mean) / spread) ** 2))
+
+    start = start_from_spans(measured.t, measured.fixes)
+    if measured.reported is not None or sigma_m is not None:
+        start[0] = mean[0]
+    starts = [np.clip(start, _LEAST_LOG, _LARGEST_LOG), mean]
+    logs = _climb(evidence, max(starts, key=lambda logs: evidence(logs, True)), axes)
+    for _ in range(_ROUNDS):
+        rates = _rates(windows, _parameters(logs, rates))
+    return _parameters(logs, rates)
+
+
+def from_spans(measured: Measured, sigma_m: float | None = None) -> TrackParameters:
+    """Find noise and motion from differences alone, with the default rates."""
+    logs = start_from_spans(measured.t, measured.fixes)
+    unit = 1.0 if measured.reported is None else float(np.median(measured.reported))
+    logs[0] = logs[0] - np.log(unit) if sigma_m is None else np.log(sigma_m / unit)
+    return _parameters(np.clip(logs, _LEAST_LOG, _LARGEST_LOG), Rates())
+
+
+def _parameters(logs: FloatArray, rates: Rates) -> TrackParameters:
+    sigma, colour, manoeuvre = np.exp(logs).tolist()
+    return TrackParameters(sigma, colour, manoeuvre, rates)
+
+
+def _windows(measured: Measured) -> list[Measured]:
+    n = measured.t.size
+    if n <= WINDOW * WINDOWS:
+        return [measured]
+    firsts = np.linspace(0, n - WINDOW, WINDOWS).astype(np.int64).tolist()
+    return [measured.window(first, first + WINDOW) for first in firsts]
+
+
+def _climb(
+    evidence: Callable[[FloatArray, bool], float], start: FloatArray, axes: tuple[int, ...]
+) -> FloatArray:
+    """Ascend coordinate by coordinate on a grid of logarithms, with steps that halve.
+
+    ``evidence`` takes logarithms and whether a rough answer will do, as it does for long steps.
+    """
+    seen: dict[tuple[bool, tuple[int, ...]], float] = {}
+
+    def logs_at(place: tuple[int, ...]) -> FloatArray:
+        return np.clip(start + _UNIT * np.array(place), _LEAST_LOG, _LARGEST_LOG)
+
+    def value_at(place: tuple[int, ...], rough: bool) -> float:
+        if (rough, place) not in seen:
+            seen[rough, place] = evidence(logs_at(place), rough)
+        return seen[rough, place]
+
+    place: tuple[int, ...] = (0, 0, 0)
+    for stride in _STRIDES:
+        rough = stride > _STRIDES[-1]
+        moved = True
+        while moved and len(seen) < _MOST_RUNS:
+            moved = False
+            for axis in axes:
+                for sign in (1, -1):
+                    while True:
+                        tried = (*place[:axis], place[axis] + sign * stride, *place[axis + 1 :])
+                        if not value_at(tried, rough) > value_at(place, rough):
+                            break
+                        place, moved = tried, True
+    return logs_at(place)
+
+
+def _rates(windows: list[Measured], parameters: TrackParameters) -> Rates:
+    """Rates at which labels occur, each with a wide prior about its default."""
+    fixes = entries = spikes = changes = 0.0
+    good_s = 0.0
+    for window in windows:
+        labels = label(window, parameters, width=_WIDTH, hopeless=_HOPELESS)[0]
+        kind = labels % LEVEL_STRIDE
+        waited = np.diff(window.t, prepend=window.t[0])
+        fixes += labels.size
+        spikes += np.count_nonzero(kind == SPIKE)
+        entries += np.count_nonzero(kind == ENTRY)
+        good_s += float(waited[~np.isin(kind, (ENTRY, BURST, REDRAW))].sum())
+        levels = labels[kind <= WIDE] // LEVEL_STRIDE
+        changes += np.count_nonzero(np.diff(levels.astype(np.int64)))
+    default = Rates()
+    return replace(
+        default,
+        spike=float(np.clip((spikes + 100 * default.spike) / (fixes + 100), 0.002, 0.4)),
+        entry=float(min(0.1, (entries + 1.0) / (good_s + 1.0 / default.entry))),
+        level=float(min(0.1, (changes + 1.0) / (good_s + 1.0 / default.level))),
+    )

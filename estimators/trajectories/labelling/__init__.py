@@ -1,0 +1,1 @@
+"""Labels of fixes, found for the whole track at once."""

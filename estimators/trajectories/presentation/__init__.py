@@ -1,0 +1,1 @@
+"""How a track leaves Python: dict, GeoJSON, data frame and text."""

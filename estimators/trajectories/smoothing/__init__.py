@@ -1,0 +1,1 @@
+"""The track under its labels: positions, velocities and their covariance."""
