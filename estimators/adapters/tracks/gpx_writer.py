@@ -1,0 +1,115 @@
+"""A cleaned track as GPX 1.1: :func:`write_gpx`.
+
+A device is a track, a segment a segment. Positions are the cleaned ones; what the schema has no element for
+stands in extensions of a namespace of our own, flags and recorded positions too, so that nothing is lost.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from xml.sax.saxutils import escape
+
+import numpy as np
+
+from estimators.adapters.tracks.cleaned import Cleaned
+from estimators.adapters.tracks.recording import Recording
+from estimators.adapters.tracks.written_columns import PIECE_ROWS, Column, positions, written_columns
+from estimators.arrays import InputError, IntArray
+
+NAMESPACE = "urn:plumbline:track:1"
+_HEAD = (
+    '<?xml version="1.0" encoding="UTF-8"?>\n'
+    '<gpx version="1.1" creator="Plumbline" xmlns="http://www.topografix.com/GPX/1/1"'
+    f' xmlns:pl="{NAMESPACE}">\n'
+)
+_ELEMENTS = {"height_m": "ele", "time": "time", "satellites": "sat", "hdop": "hdop"}
+"""Columns that GPX has an element for, in the order that its schema asks for."""
+_ABOVE = frozenset({"lat", "lon", "device", "segment"})
+_NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+def write_gpx(recording: Recording, cleaned: Cleaned | None = None) -> Iterator[bytes]:
+    r"""Write tracks, segments and points.
+
+    Parameters
+    ----------
+    recording : Recording
+    cleaned : Cleaned, optional
+        Default: the recording as it is.
+
+    Returns
+    -------
+    iterator of bytes
+        Pieces of the file. Rows without a position to write are left out: a point of GPX must have one.
+
+    Raises
+    ------
+    InputError
+        If the recording's times are plain numbers, which GPX cannot hold.
+
+    Examples
+    --------
+    >>> from estimators.adapters.tracks import read_track
+    >>> track = read_track(b"time,lat,lon\n2021-07-28T09:19:04+02:00,48.83,2.44\n")
+    >>> print(b"".join(write_gpx(track)).decode().splitlines()[4])
+    <trkpt lat="48.8300000" lon="2.4400000"><time>2021-07-28T09:19:04+02:00</time></trkpt>
+    """
+    if recording.time.dtype.kind != "M":
+        raise InputError("time", "GPX needs points in time, and this track has plain numbers; write CSV")
+    return _pieces(recording, written_columns(recording, cleaned), _rows(recording, cleaned))
+
+
+def _rows(recording: Recording, cleaned: Cleaned | None) -> IntArray:
+    """Rows that have a position, grouped by device and segment, in input order within them."""
+    lat, lon, _ = positions(recording, cleaned)
+    rows = np.flatnonzero(np.isfinite(lat) & np.isfinite(lon))
+    keys = [key[rows] for key in (recording.segment, recording.device) if key is not None]
+    return rows[np.lexsort(keys)] if keys else rows
+
+
+def _pieces(recording: Recording, columns: dict[str, Column], rows: IntArray) -> Iterator[bytes]:
+    yield _HEAD.encode()
+    device = np.zeros(rows.size, dtype=np.int64) if recording.device is None else recording.device[rows]
+    segment = np.zeros(rows.size, dtype=np.int64) if recording.segment is None else recording.segment[rows]
+    changes = np.flatnonzero((np.diff(device) != 0) | (np.diff(segment) != 0)) + 1
+    starts = [0, *changes.tolist()] if rows.size else []
+    for place, start in enumerate(starts):
+        stop = starts[place + 1] if place + 1 < len(starts) else rows.size
+        if place == 0 or device[start] != device[start - 1]:
+            yield ("</trk>\n" if place else "").encode() + b"<trk>\n"
+            if recording.devices:
+                yield f"<name>{_escaped(recording.devices[device[start]])}</name>\n".encode()
+        yield b"<trkseg>\n"
+        for at in range(start, stop, PIECE_ROWS):
+            yield "".join(_points(columns, rows[at : min(at + PIECE_ROWS, stop)])).encode()
+        yield b"</trkseg>\n"
+    yield b"</trk>\n</gpx>\n" if starts else b"</gpx>\n"
+
+
+def _points(columns: dict[str, Column], rows: IntArray) -> Iterator[str]:
+    inside = {name: columns[name].text(rows) for name in _ELEMENTS if name in columns}
+    extra = {
+        name: column.text(rows)
+        for name, column in columns.items()
+        if name not in _ABOVE and name not in _ELEMENTS
+    }
+    for row, (lat, lon) in enumerate(zip(columns["lat"].text(rows), columns["lon"].text(rows), strict=True)):
+        body = "".join(
+            f"<{tag}>{text}</{tag}>"
+            for name, tag in _ELEMENTS.items()
+            if name in inside and (text := inside[name][row]) is not None
+        )
+        more = "".join(
+            f"<pl:{name}>{_escaped(text)}</pl:{name}>"
+            for name, texts in extra.items()
+            if (text := texts[row]) is not None
+        )
+        if more:
+            body += f"<extensions>{more}</extensions>"
+        yield f'<trkpt lat="{lat}" lon="{lon}">{body}</trkpt>\n'
+
+
+def _escaped(text: str) -> str:
+    """Text of an element; characters that XML 1.0 has no way to write are left out."""
+    return escape(_NOT_XML.sub("", text))

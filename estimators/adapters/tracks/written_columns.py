@@ -1,0 +1,200 @@
+"""A recording and what a cleaner said of it as columns of text: :func:`written_columns`, for all writers.
+
+Text is made for a piece of the rows at a time, so that ten million rows need not stand in memory as text.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from estimators.adapters.tracks.assembly import RANGES
+from estimators.adapters.tracks.cleaned import Cleaned
+from estimators.adapters.tracks.recording import Moments, Recording
+from estimators.arrays import BoolArray, FloatArray, InputError, IntArray
+
+PIECE_ROWS = 1 << 13
+_FEWEST_DIGITS, _MOST_DIGITS = 7, 10
+"""Seven digits of a degree are 11 mm, ten 11 micrometres."""
+_ROUNDING_DEG = 6e-14
+"""Two units in the last place of a float64 near 180."""
+
+Texts = list[str | None]
+Rows = slice | IntArray
+"""Rows of which text is made: a piece of the table, or some of it in another order."""
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A column of what is written.
+
+    Parameters
+    ----------
+    name : str
+    kind : {"number", "text", "flag"}
+    text : function of rows
+        Texts of these rows; None where there is no value.
+    """
+
+    name: str
+    kind: Literal["number", "text", "flag"]
+    text: Callable[[Rows], Texts]
+
+
+def written_columns(recording: Recording, cleaned: Cleaned | None) -> dict[str, Column]:
+    """Columns by name, in the order in which they are written.
+
+    Parameters
+    ----------
+    recording : Recording
+    cleaned : Cleaned, optional
+        Its positions then are ``lat`` and ``lon``, and the recorded ones ``raw_lat`` and ``raw_lon``.
+
+    Raises
+    ------
+    InputError
+        If the two differ in length.
+    """
+    if cleaned is not None and len(cleaned.lat) != len(recording):
+        raise InputError("cleaned", f"has {len(cleaned.lat)} rows where the recording has {len(recording)}")
+    columns: dict[str, Column] = {"time": _time(recording)}
+    if recording.devices:
+        columns["device"] = Column("device", "text", lambda part: _devices(recording, part))
+    if recording.segment is not None:
+        columns["segment"] = _number("segment", recording.segment, str)
+    digits = position_digits(recording)
+    lat, lon, height = positions(recording, cleaned)
+    columns |= {name: _fixed(name, values, digits) for name, values in (("lat", lat), ("lon", lon))}
+    if height is not None:
+        columns["height_m"] = _number("height_m", height, _metres)
+    if cleaned is not None:
+        columns["raw_lat"] = _fixed("raw_lat", recording.lat, digits)
+        columns["raw_lon"] = _fixed("raw_lon", recording.lon, digits)
+        if recording.height_m is not None and cleaned.height_m is not None:
+            columns["raw_height_m"] = _number("raw_height_m", recording.height_m, _metres)
+    for name in RANGES:
+        values = getattr(recording, name)
+        if name != "height_m" and values is not None:
+            columns[name] = _number(name, values, _shortest)
+    if cleaned is not None:
+        columns |= _labels(cleaned)
+    return columns
+
+
+def positions(
+    recording: Recording, cleaned: Cleaned | None
+) -> tuple[FloatArray, FloatArray, FloatArray | None]:
+    """Latitude, longitude and height that are written: the cleaned ones where there are any."""
+    if cleaned is None:
+        return recording.lat, recording.lon, recording.height_m
+    height = recording.height_m if cleaned.height_m is None else cleaned.height_m
+    return cleaned.lat, cleaned.lon, height
+
+
+def position_digits(recording: Recording) -> int:
+    """Digits after the point with which the recorded degrees can be written as they came, 7 to 10.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> lat, lon = np.array([45.484591697]), np.array([13.50758978])
+    >>> position_digits(Recording("gpx", np.zeros(1), lat, lon, np.zeros(1, dtype=np.uint8)))
+    9
+    """
+    for digits in range(_FEWEST_DIGITS, _MOST_DIGITS):
+        if all(
+            bool((np.abs(np.round(known, digits) - known) <= _ROUNDING_DEG).all())
+            for known in (column[~np.isnan(column)] for column in (recording.lat, recording.lon))
+        ):
+            return digits
+    return _MOST_DIGITS
+
+
+def _labels(cleaned: Cleaned) -> dict[str, Column]:
+    columns: dict[str, Column] = {}
+    if cleaned.inlier is not None:
+        inlier: BoolArray = cleaned.inlier
+        columns["inlier"] = Column(
+            "inlier", "flag", lambda part: ["true" if good else "false" for good in inlier[part]]
+        )
+    if cleaned.probability is not None:
+        columns["probability"] = _number("probability", cleaned.probability, _six)
+    if cleaned.reason is not None:
+        reason = np.array(cleaned.reason, dtype=object)
+        columns["reason"] = Column("reason", "text", lambda part: [str(word) for word in reason[part]])
+    for name, values in cleaned.others.items():
+        columns[name] = _number(name, values, _six)
+    return columns
+
+
+def _number(name: str, values: FloatArray | np.ndarray, text: Callable[[float], str]) -> Column:
+    return Column(
+        name,
+        "number",
+        lambda part: [text(value) if value - value == 0 else None for value in values[part].tolist()],
+    )
+
+
+def _fixed(name: str, values: FloatArray, digits: int) -> Column:
+    return _number(name, values, lambda value: f"{value:.{digits}f}")
+
+
+def _metres(value: float) -> str:
+    return f"{value:.3f}".rstrip("0").rstrip(".")
+
+
+def _six(value: float) -> str:
+    return f"{value:.6g}"
+
+
+def _shortest(value: float) -> str:
+    return repr(value).removesuffix(".0")
+
+
+def _devices(recording: Recording, part: Rows) -> Texts:
+    if recording.device is None:
+        return [recording.devices[0]] * len(recording.time[part])
+    return [recording.devices[place] for place in recording.device[part].tolist()]
+
+
+def _time(recording: Recording) -> Column:
+    if recording.time.dtype.kind != "M":
+        return _number("time", recording.time, _shortest)
+    unit = clock_unit(recording)
+    return Column("time", "text", lambda part: clock_texts(recording, part, unit))
+
+
+def clock_unit(recording: Recording) -> Literal["s", "ms", "us", "ns"]:
+    """Coarsest unit in which no time of the recording is rounded."""
+    counts = recording.time[~np.isnat(recording.time)].astype(np.int64)
+    if not (counts % 1_000_000_000).any():
+        return "s"
+    if not (counts % 1_000_000).any():
+        return "ms"
+    return "us" if not (counts % 1_000).any() else "ns"
+
+
+def clock_texts(recording: Recording, part: Rows, unit: Literal["s", "ms", "us", "ns"]) -> Texts:
+    """ISO 8601 in the zone in which each time came; Z where that is UTC or was not said."""
+    time: Moments = recording.time[part].astype("datetime64[ns]")
+    offsets = recording.utc_offset_minutes
+    if offsets is None:
+        return [
+            None if text == "NaT" else f"{text}Z" for text in np.datetime_as_string(time, unit=unit).tolist()
+        ]
+    minutes = offsets[part].astype(np.int64)
+    local = np.datetime_as_string(time + minutes.astype("timedelta64[m]"), unit=unit).tolist()
+    zones = {value: _zone(value) for value in set(minutes.tolist())}
+    return [
+        None if text == "NaT" else text + zones[offset]
+        for text, offset in zip(local, minutes.tolist(), strict=True)
+    ]
+
+
+def _zone(minutes: int) -> str:
+    if minutes == 0:
+        return "Z"
+    return f"{'-' if minutes < 0 else '+'}{abs(minutes) // 60:02d}:{abs(minutes) % 60:02d}"
