@@ -1,0 +1,1 @@
+"""``python -m benchmarks.tracks``: cleaned tracks beside peers, on tracks whose truth is known."""
