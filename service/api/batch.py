@@ -14,6 +14,7 @@ from fastapi.responses import StreamingResponse
 
 from estimators.consensus.cancellation import cancelled_by
 from service.admission import Admission
+from service.api.computing import read_body
 from service.codecs.arguments import read_arguments
 from service.codecs.batch.registry import (
     READERS,
@@ -87,9 +88,7 @@ async def fit_batch(request: Request, query: Annotated[BatchQuery, Query()]) -> 
     headers = request.headers
     writer = choose_writer(headers.get("accept"), query.format)
     reader = choose_reader(headers.get("content-type"), headers.get("content-encoding"))
-    body = await request.body()
-    if not body or body.isspace():
-        raise Problem(ProblemType.empty_body)
+    body = await read_body(request)
     watch = Stopwatch()
     job = _job(request, query, body, reader, writer, watch)
     await request.app.state.warmth.wait(request.app.state.settings.queue_seconds)

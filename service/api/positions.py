@@ -8,6 +8,7 @@ from fastapi import APIRouter, Query, Request, Response
 
 import estimators
 from estimators.consensus.cancellation import cancelled_by
+from service.api.computing import compute_answer, read_body
 from service.codecs.limits import UNPACKED_PER_BODY, Limits
 from service.codecs.negotiation import media_type_of
 from service.codecs.positions.columns import Sent
@@ -20,15 +21,13 @@ from service.codecs.positions.registry import (
     RangeReader,
     choose_position_writer,
 )
-from service.compute import Compute, Patience
-from service.errors import Problem, ProblemType
-from service.observability.metrics import Metrics
+from service.compute import Patience
+from service.errors import ProblemType
 from service.observability.timing import Stopwatch
 from service.schemas.answers import MethodAnswer
 from service.schemas.fixes import PositionAnswer, PositionMethodsAnswer, PositionsAnswer
 from service.schemas.position_query import PositionQuery
 from service.schemas.responses import computed_responses
-from service.security.headers import PICTURE_POLICY
 from service.settings import Settings
 
 router = APIRouter(prefix="/v1", tags=["positions"])
@@ -108,27 +107,16 @@ async def find(request: Request, query: Annotated[PositionQuery, Query()]) -> Re
     writer = choose_position_writer(headers.get("accept"), query.format)
     content_type = headers.get("content-type")
     reader = READERS[media_type_of(content_type, headers.get("content-encoding"), tuple(READERS))]
-    body = await request.body()
-    if not body or body.isspace():
-        raise Problem(ProblemType.empty_body)
-    compute: Compute = request.app.state.compute
+    body = await read_body(request)
     settings: Settings = request.app.state.settings
-    metrics: Metrics = request.app.state.metrics
     limits = Limits(settings.max_points, None, UNPACKED_PER_BODY * settings.max_body_bytes)
     watch = Stopwatch()
-    await request.app.state.warmth.wait(settings.queue_seconds)
 
     def job(patience: Patience) -> tuple[bytes, int]:
         sent = Sent(body, content_type or "", query, limits, patience.check)
         return answer(sent, reader, writer, watch, patience)
 
-    content, rows = await compute.run(job, request.receive(), watch)
-    metrics.count_fit(rows, watch.seconds)
-    request.state.points = rows
-    answer_headers = {"Server-Timing": watch.server_timing(), "Vary": "Accept"}
-    if writer.name == "svg":
-        answer_headers["Content-Security-Policy"] = PICTURE_POLICY
-    return Response(content, headers=answer_headers, media_type=writer.content_type)
+    return await compute_answer(request, writer, watch, job)
 
 
 def answer(

@@ -10,17 +10,16 @@ from estimators import InputError, NoFit, RobustOptions, Trend, fit_trend
 from estimators.consensus.cancellation import cancelled_by
 from estimators.notices import notice_to_dict
 from estimators.result import NoFitReason
+from service.api.computing import compute_answer, read_body
 from service.codecs.columns import Columns
 from service.codecs.limits import check_columns
 from service.codecs.registry import WRITERS, Read, Writer, choose_reader, choose_writer
-from service.compute import Compute, Patience
+from service.compute import Patience
 from service.errors import FieldError, Problem, ProblemType, invalid_value
-from service.observability.metrics import Metrics
 from service.observability.timing import Stopwatch
 from service.schemas.answers import TrendAnswer
 from service.schemas.options import FitArguments, TrendOptions, TrendQuery
 from service.schemas.responses import computed_responses
-from service.security.headers import PICTURE_POLICY
 from service.settings import Settings
 
 router = APIRouter(tags=["trends"])
@@ -70,25 +69,14 @@ async def fit(request: Request, query: Annotated[TrendQuery, Query()]) -> Respon
     headers = request.headers
     writer = choose_writer(headers.get("accept"), query.format)
     reader = choose_reader(headers.get("content-type"), headers.get("content-encoding"))
-    body = await request.body()
-    if not body or body.isspace():
-        raise Problem(ProblemType.empty_body)
-    compute: Compute = request.app.state.compute
+    body = await read_body(request)
     settings: Settings = request.app.state.settings
-    metrics: Metrics = request.app.state.metrics
     watch = Stopwatch()
-    await request.app.state.warmth.wait(settings.queue_seconds)
 
     def job(patience: Patience) -> tuple[bytes, int]:
         return answer(body, reader, writer, query, settings.max_points, watch, patience)
 
-    content, points = await compute.run(job, request.receive(), watch)
-    metrics.count_fit(points, watch.seconds)
-    request.state.points = points
-    answer_headers = {"Server-Timing": watch.server_timing(), "Vary": "Accept"}
-    if writer.name == "svg":
-        answer_headers["Content-Security-Policy"] = PICTURE_POLICY
-    return Response(content, headers=answer_headers, media_type=writer.content_type)
+    return await compute_answer(request, writer, watch, job)
 
 
 def answer(
