@@ -60,9 +60,12 @@ def parse_numbers(
 
 def _all_at_once(cells: Sequence[str | None]) -> FloatArray | None:
     """All cells where none is missing and none uses Python's own spellings (``1_000``)."""
-    try:
-        values = np.fromiter(map(float, cells), dtype=np.float64, count=len(cells))  # type: ignore[arg-type]
-    except (ValueError, TypeError):
+    present = [cell for cell in cells if cell is not None]
+    if len(present) < len(cells):
         return None
-    text = "".join(cells)  # type: ignore[arg-type]
+    try:
+        values = np.fromiter(map(float, present), dtype=np.float64, count=len(present))
+    except ValueError:
+        return None
+    text = "".join(present)
     return values if text.isascii() and "_" not in text and bool(np.isfinite(values).all()) else None

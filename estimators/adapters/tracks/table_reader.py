@@ -66,11 +66,14 @@ def read_table(
             _check_size(table.num_rows, len(names), most_bytes)
         # Offsets of a damaged table may point anywhere.
         table.select(list(names.values())).validate(full=True)
-        return _recording(form, table, names, time_unit)
     except InputError:
         raise
-    except (pa.ArrowException, OSError, ValueError, KeyError, TypeError, NotImplementedError) as error:
+    except (pa.ArrowException, OSError, ValueError, KeyError, TypeError) as error:
         raise InputError(FIELD, f"is a damaged {form.capitalize()} file; write it again") from error
+    try:
+        return _recording(form, table, names, time_unit)
+    except pa.ArrowException as error:
+        raise InputError(FIELD, "has a column of a type that is no number, time or text") from error
 
 
 def _named(names: list[str], columns: Mapping[str, str]) -> dict[str, str]:
