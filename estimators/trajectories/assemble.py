@@ -50,7 +50,6 @@ def assemble(
     method: str,
     options: TrackOptions,
     level: float,
-    level_z: float,
 ) -> Track:
     """Make the answer.
 
@@ -64,13 +63,14 @@ def assemble(
     solved : Solved
     method : str
     options : TrackOptions
-    level, level_z : float
-        Confidence level and its normal quantile.
+    level : float
+        Of intervals.
     """
     places = np.ascontiguousarray(solved.states[:, :, 0])
     variance = position_variance(rows.t, rows.fixes, solved, labelled.parameters.colour_m)
     residual = np.hypot(*(rows.fixes - places).T)
-    codes = _reasons(rows, solved, variance, residual, labelled)
+    gaps = _gaps(rows, labelled)
+    codes = _reasons(rows, solved, variance, residual, gaps)
     inlier = np.isin(codes, (FixReason.ok, FixReason.gap_edge))
     probability = np.zeros(rows.t.size)
     probability[rows.measures] = labelled.probability
@@ -133,18 +133,18 @@ def assemble(
         ),
         distance=Distance(
             float(np.sum(steps_of(_on_ground(rows.lat_deg[rows.order][raw], rows.lon_deg[rows.order][raw])))),
-            travelled(ground, sigma, level_z),
+            travelled(ground, sigma, level),
         ),
         stretches=stretches(rows.t, ground, sigma, speed, moving, rows.order, level),
         level=level,
-        notices=_notices(rows, measured, labelled, codes),
+        notices=_notices(rows, measured, labelled, codes, gaps),
         input_lat_deg=rows.lat_deg,
         input_lon_deg=rows.lon_deg,
     )
 
 
 def _reasons(
-    rows: Rows, solved: Solved, variance: FloatArray, residual: FloatArray, labelled: Labelled
+    rows: Rows, solved: Solved, variance: FloatArray, residual: FloatArray, gaps: list[int]
 ) -> CodeArray:
     """Reasons of the rows in order of time, as far as labels say them."""
     codes = np.zeros(rows.t.size, dtype=np.uint8)
@@ -155,7 +155,7 @@ def _reasons(
     for first, stop in runs_of(rows.repeat):
         if off[first:stop].any():
             codes[first:stop] = FixReason.stale
-    for place in _gaps(rows, labelled):
+    for place in gaps:
         for edge in (place, place + 1):
             if codes[edge] == FixReason.ok:
                 codes[edge] = FixReason.gap_edge
@@ -183,7 +183,9 @@ def _spread(rows: Rows, values: FloatArray) -> FloatArray:
     return out
 
 
-def _notices(rows: Rows, measured: Measured, labelled: Labelled, codes: CodeArray) -> tuple[Notice, ...]:
+def _notices(
+    rows: Rows, measured: Measured, labelled: Labelled, codes: CodeArray, gaps: list[int]
+) -> tuple[Notice, ...]:
     """Say what is worth knowing."""
     found = []
     parameters = labelled.parameters
@@ -207,8 +209,8 @@ def _notices(rows: Rows, measured: Measured, labelled: Labelled, codes: CodeArra
     shifted = int(np.count_nonzero(rows.codes == FixReason.out_of_order))
     if shifted:
         found.append(notice(NoticeCode.clock_jumped, rows=shifted))
-    if _gaps(rows, labelled):
-        found.append(notice(NoticeCode.long_gaps, gaps=len(_gaps(rows, labelled))))
+    if gaps:
+        found.append(notice(NoticeCode.long_gaps, gaps=len(gaps)))
     invalid = int(np.count_nonzero(rows.codes == FixReason.invalid))
     if invalid:
         found.append(notice(NoticeCode.invalid_rows, rows=invalid))

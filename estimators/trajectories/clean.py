@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.special import ndtri
 
 from estimators.arrays import ArrayLike, FloatArray, InputError, Reason
 from estimators.result import NoFit, NoFitReason, Points
@@ -97,7 +96,7 @@ def clean_trajectory(
     )
     labelled = TRACK_METHODS[method].labeller(measured, options)
     solved = _smooth(rows, labelled)
-    return assemble(rows, measured, labelled, solved, method, options, level, float(ndtri(0.5 + 0.5 * level)))
+    return assemble(rows, measured, labelled, solved, method, options, level)
 
 
 def _smooth(rows: Rows, labelled: Labelled) -> Solved:

@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 from numba import types
+from scipy.special import ndtri
 
 from estimators.arrays import FloatArray
 from estimators.kernels import kernel, ro
@@ -48,7 +49,12 @@ def walk(places: FloatArray, reach: FloatArray) -> float:
     return float(total)
 
 
-def travelled(places: FloatArray, sigma: FloatArray, level_z: float) -> Estimate:
+def length_of(places: FloatArray, sigma: FloatArray) -> float:
+    """Metres along smoothed places, shape (m, 3), whose standard deviations per axis are ``sigma``."""
+    return walk(places, _REACH * sigma)
+
+
+def travelled(places: FloatArray, sigma: FloatArray, level: float) -> Estimate:
     """Distance along the smoothed track.
 
     Its error is that of the two ends, and of the scale: half of what the path gains when it is walked in
@@ -60,15 +66,16 @@ def travelled(places: FloatArray, sigma: FloatArray, level_z: float) -> Estimate
         Smoothed, Cartesian, metres.
     sigma : ndarray, shape (m,)
         Their standard deviations per axis.
-    level_z : float
-        Normal quantile of the interval.
+    level : float
+        Of the interval, which is normal.
     """
     if sigma.size < 2:
         return Estimate(0.0, 0.0, 0.0, 0.0)
-    total = walk(places, _REACH * sigma)
+    total = length_of(places, sigma)
     wiggles = walk(places, sigma) - total
     stderr = math.sqrt(float(sigma[0] ** 2 + sigma[-1] ** 2) + 0.25 * wiggles * wiggles)
-    return Estimate(total, stderr, max(0.0, total - level_z * stderr), total + level_z * stderr)
+    margin = float(ndtri(0.5 + 0.5 * level)) * stderr
+    return Estimate(total, stderr, max(0.0, total - margin), total + margin)
 
 
 def steps_of(places: FloatArray) -> FloatArray:

@@ -13,7 +13,7 @@ import numpy as np
 from estimators.arrays import BoolArray, FloatArray, IntArray
 from estimators.regression.theil_sen import theil_sen, theil_sen_interval
 from estimators.result import Estimate
-from estimators.trajectories.distance import travelled
+from estimators.trajectories.distance import length_of
 from estimators.trajectories.labelling.modes import COLOUR_TIME_S
 from estimators.trajectories.stale import runs_of
 from estimators.trajectories.track import Stretch
@@ -99,7 +99,7 @@ def stretches(
     for first, stop, kind in sorted(found):
         # A stretch ends where the next begins, so that durations add up to that of the track.
         end = min(stop + 1, t.size)
-        length = travelled(np.ascontiguousarray(ground[first:end]), sigma[first:end], 1.0).value
+        length = length_of(np.ascontiguousarray(ground[first:end]), sigma[first:end])
         answer.append(
             Stretch(
                 kind="moving" if kind else "stopped",
