@@ -3,17 +3,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import sidereon
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from estimators.adapters import rinex
 from estimators.arrays import InputError
 from estimators.gnss.observed_epochs import ObservedEpochs
 from estimators.gnss.options import PositionOptions
 from estimators.gnss.snapshot.solved import solve_epochs
 from tests.gnss.recorded import read_recorded
-
-sidereon = pytest.importorskip("sidereon")
-rinex = pytest.importorskip("estimators.adapters.rinex")
 
 FILES = {
     "esbc": (

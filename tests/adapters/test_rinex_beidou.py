@@ -4,9 +4,8 @@ import gzip
 from pathlib import Path
 
 import numpy as np
-import pytest
 
-rinex = pytest.importorskip("estimators.adapters.rinex")
+from estimators.adapters import rinex
 
 
 def test_the_old_number_of_beidous_first_band_is_read_as_the_new(gnss_data: Path) -> None:

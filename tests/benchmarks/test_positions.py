@@ -17,6 +17,7 @@ from benchmarks.positions.peers import answer_by_peer, peer_version
 from benchmarks.positions.sky import STATIONS, read_station, simulate_sky
 from estimators.geodesy.ellipsoid import to_geodetic
 from estimators.geodesy.local_frame import enu_axes
+from tests.external import require_program
 
 
 @pytest.mark.parametrize("size", SIZES)
@@ -84,8 +85,7 @@ def test_the_batch_and_the_verb_give_the_same_positions() -> None:
 
 
 def test_faults_in_a_file_are_what_rtklib_sees(gnss_data: Path) -> None:
-    if not rtklib.is_present():
-        pytest.skip("rnx2rtkp is not installed")
+    require_program(rtklib.PROGRAM)
     station = STATIONS[0]
     skies = read_station(station, gnss_data)[:20]
     rng = np.random.default_rng(6)

@@ -99,7 +99,6 @@ def test_named_methods_work_on_single_epochs() -> None:
 
 
 def test_answers_are_json_of_columns_and_frames_of_epochs() -> None:
-    pytest.importorskip("pandas")
     standing = drive(5, path=mast, step_s=60.0, faults=1)
     ranges = np.asarray(standing.epochs[1].pseudoranges_m).copy()
     ranges[2] = np.nan

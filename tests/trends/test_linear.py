@@ -105,7 +105,6 @@ def test_predictions_take_own_columns_or_their_means() -> None:
 
 
 def test_the_frame_of_a_trend_with_own_columns_has_their_fit() -> None:
-    pytest.importorskip("pandas")
     load = RNG.uniform(0.0, 50.0, 160)
     trend = fitted(1.5 * load + NOISE, model="linear", columns={"load": load})
     frame = trend.to_frame()
@@ -178,7 +177,6 @@ def test_values_of_any_magnitude_give_the_same_answer(unit: float) -> None:
 
 
 def test_a_picture_can_be_drawn_of_every_shape() -> None:
-    pytest.importorskip("matplotlib")
     y = 5.0 + 0.02 * (T - 50.0) ** 2 + NOISE + ERRORS
     for arguments in ({"model": "constant"}, {"model": "linear", "degree": 2}, {"seasonal": 12}):
         assert fitted(y, **arguments).plot() is not None

@@ -4,6 +4,8 @@ import io
 import zipfile
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -43,7 +45,6 @@ def kmz() -> bytes:
 
 
 def tables() -> dict[str, bytes]:
-    pa, pq = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
     table = pa.table({"time": [0.0, 1.0], "lat": [50.0, 51.0], "lon": [7.0, 7.0], "device": ["a", "b"]})
     packed, streamed = io.BytesIO(), io.BytesIO()
     pq.write_table(table, packed)

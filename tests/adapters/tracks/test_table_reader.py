@@ -2,13 +2,12 @@ import io
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 from estimators.adapters.tracks import RowFault, read_track
 from estimators.arrays import InputError
-
-pa = pytest.importorskip("pyarrow")
-pq = pytest.importorskip("pyarrow.parquet")
 
 
 def parquet(columns: dict[str, Any]) -> bytes:
