@@ -8,10 +8,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from benchmarks.positions.cells import all_beds, measure_bed, measure_protection, warm_up
+from benchmarks.positions.clean import measure_clean
 from benchmarks.positions.page import describe_versions, write_page
 from benchmarks.positions.peers import peer_version
 from benchmarks.positions.rtklib import is_present
-from benchmarks.positions.sky import data_folder
+from benchmarks.positions.sky import OPEN_SKIES, data_folder
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 
@@ -36,9 +37,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     beds = all_beds(data, chosen.epochs, chosen.seed)
     warm_up(beds)
     cells = [cell for bed in beds for cell in measure_bed(bed, chosen.seed, say)]
+    clean = measure_clean(OPEN_SKIES, data, say)
     protection = measure_protection(chosen.protection, chosen.seed, say)
     versions = describe_versions(is_present(), peer_version("sidereon"), peer_version("gnss_lib_py"))
-    say(f"wrote {write_page(cells, protection, versions, chosen.out)}")
+    say(f"wrote {write_page(cells, clean, protection, versions, chosen.out)}")
     return 0
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import datetime
 import gzip
+import re
 import resource
 import shutil
 import subprocess
@@ -20,11 +21,15 @@ import numpy as np
 from benchmarks.positions.answers import Answer
 from benchmarks.positions.faults import Faulty
 from benchmarks.positions.sky import Station
+from estimators.arrays import FloatArray
 
 PROGRAM = "rnx2rtkp"
 _SYSTEM_BITS = {"G": 1, "R": 4, "E": 8, "J": 16, "C": 32}
 _WEEK_START = datetime.datetime(1980, 1, 6)  # GPS time, which no zone describes
 _FIELD, _WIDTH, _FIRST = 16, 14, 3
+_INDENT, _NUMBER = 4, 19
+_INAV_CLOCK = 1 << 9
+"""Of the data sources of a Galileo message: its clock is that of E1 with E5b (RINEX 3.05, table A8)."""
 _CONFIGURATION = """pos1-posmode=single
 pos1-elmask=10
 pos1-navsys={systems}
@@ -65,26 +70,8 @@ def answer_by_rtklib(station: Station, data: Path, faulty: Sequence[Faulty]) -> 
         round(given.sky.time_s): dict(zip(given.sky.name, given.bias_m, strict=True)) for given in faulty
     }
     folder = data / station.folder
-    with tempfile.TemporaryDirectory() as made:
-        work = Path(made)
-        observations, navigation = work / "faulty.obs", work / "station.nav"
-        observations.write_text(_lengthened(_text(folder / station.observations), biases), encoding="ascii")
-        navigation.write_text(_text(folder / station.navigation), encoding="ascii")
-        configuration = work / "single.conf"
-        configuration.write_text(
-            _CONFIGURATION.format(systems=sum(_SYSTEM_BITS[letter] for letter in station.systems)),
-            encoding="ascii",
-        )
-        out = work / "out.pos"
-        before = _child_seconds()
-        subprocess.run(
-            [PROGRAM, "-k", configuration, "-o", out, observations, navigation],
-            check=True,
-            capture_output=True,
-        )
-        seconds = _child_seconds() - before
-        positions = _positions(out)
-        used = _used(work / "out.pos.stat")
+    observations = _lengthened(_text(folder / station.observations), biases)
+    positions, used, seconds = _run(station.systems, observations, _text(folder / station.navigation))
     answers = []
     for given in faulty:
         at = round(given.sky.time_s)
@@ -94,6 +81,63 @@ def answer_by_rtklib(station: Station, data: Path, faulty: Sequence[Faulty]) -> 
             chosen = used.get(at, set())
             answers.append(Answer(positions[at], np.array([name in chosen for name in given.sky.name])))
     return answers, 1e3 * seconds / len(faulty)
+
+
+def clean_positions(station: Station, data: Path, *, one_message: bool) -> dict[int, FloatArray]:
+    """Positions of all epochs of a station, by second of the week.
+
+    Parameters
+    ----------
+    station : Station
+    data : pathlib.Path
+        Folder of the stations.
+    one_message : bool
+        Whether to hand over Galileo's I/NAV messages alone. The program (2.4.3 b34) takes orbits and clocks
+        from them, but the group delay from the first message of the satellite in the file, and F/NAV messages
+        have none for E1 with E5b (its issue 785, https://github.com/tomojitakasu/RTKLIB/issues/785).
+    """
+    folder = data / station.folder
+    navigation = _text(folder / station.navigation)
+    given = _without_other_messages(navigation) if one_message else navigation
+    return _run(station.systems, _text(folder / station.observations), given)[0]
+
+
+def _run(
+    systems: str, observations: str, navigation: str
+) -> tuple[dict[int, FloatArray], dict[int, set[str]], float]:
+    """Positions and the satellites used, by second of the week, and seconds of processor time."""
+    with tempfile.TemporaryDirectory() as made:
+        work = Path(made)
+        files = work / "station.obs", work / "station.nav"
+        for file, text in zip(files, (observations, navigation), strict=True):
+            file.write_text(text, encoding="ascii")
+        configuration = work / "single.conf"
+        configuration.write_text(
+            _CONFIGURATION.format(systems=sum(_SYSTEM_BITS[letter] for letter in systems)), encoding="ascii"
+        )
+        out = work / "out.pos"
+        before = _child_seconds()
+        subprocess.run(
+            [PROGRAM, "-k", configuration, "-o", out, *files],
+            check=True,
+            capture_output=True,
+        )
+        seconds = _child_seconds() - before
+        return _positions(out), _used(work / "out.pos.stat"), seconds
+
+
+def _without_other_messages(navigation: str) -> str:
+    """Leave out Galileo's messages (RINEX 3) but I/NAV."""
+    header, _, body = navigation.partition("END OF HEADER")
+    rest_of_line, _, body = body.partition("\n")
+    records = re.split(r"\n(?=[A-Z])", body)
+    kept = [record for record in records if not record.startswith("E") or _is_inav(record)]
+    return f"{header}END OF HEADER{rest_of_line}\n" + "\n".join(kept)
+
+
+def _is_inav(record: str) -> bool:
+    sources = record.split("\n")[5][_INDENT + _NUMBER : _INDENT + 2 * _NUMBER]
+    return bool(int(float(sources.replace("D", "E"))) & _INAV_CLOCK)
 
 
 def _child_seconds() -> float:
@@ -153,7 +197,7 @@ def _code_columns(header: str) -> dict[str, tuple[int, ...]]:
     }
 
 
-def _positions(path: Path) -> dict[int, np.ndarray[tuple[int], np.dtype[np.float64]]]:
+def _positions(path: Path) -> dict[int, FloatArray]:
     found = {}
     for line in path.read_text(encoding="ascii").splitlines():
         parts = line.split()

@@ -84,6 +84,15 @@ STATIONS = (
     Station("ESBC, four systems", *_ESBC, systems="GREC"),
     Station("Kamakura, GPS + Galileo + QZSS", *_KAMAKURA, systems="GEJ"),
 )
+OPEN_SKIES = (
+    STATIONS[0],
+    Station("ESBC, GPS + Galileo", *_ESBC, systems="GE"),
+    STATIONS[1],
+    Station("Kamakura, GPS", *_KAMAKURA, systems="G"),
+    Station("Kamakura, GPS + Galileo", *_KAMAKURA, systems="GE"),
+    STATIONS[2],
+)
+"""Without faults, more combinations of systems."""
 
 
 def data_folder() -> Path:

@@ -142,7 +142,7 @@ def _satellites(
     variance = np.where(used, 1.0 - spread, 1.0 + spread)
     checked = variance > _UNCHECKED
     root = np.sqrt(np.where(checked, variance, 1.0))
-    statistic = np.where(checked, np.abs(problem.z) / root, np.nan)
+    statistic = np.where(checked, np.abs(problem.left_over) / root, np.nan)
     shift = float(-ndtri(options.false_alarm / (2 * used.size)) - ndtri(options.missed_detection))
     # A bias b moves the w-test by b sqrt(S_ii) / sigma, a prediction error by b / (sigma sqrt(1 + a N a')).
     reach = np.where(used, 1.0 / root, root)
@@ -159,6 +159,7 @@ def _satellites(
         status=tuple(status),
         inlier=used.copy(),
         fault_probability=probability,
+        weight=solved.weight,
         residual_m=problem.z * table.sigma_m,
         sigma_m=table.sigma_m,
         statistic=statistic,

@@ -56,7 +56,7 @@ class GlobalTest:
     Attributes
     ----------
     statistic : float
-        Sum of squared whitened residuals.
+        Sum of squared whitened residuals of least squares.
     dof : int
         Redundant satellites; 0 leaves nothing to test.
     threshold : float or None
@@ -127,12 +127,15 @@ class Satellites:
         Whether the answer uses it.
     fault_probability : ndarray of float64, shape (n,)
         Posterior; NaN for rows that take no part.
+    weight : ndarray of float64, shape (n,)
+        What the range counts, from 0 to 1, beside its sigma: ``auto`` lets ranges count less that agree less
+        than the others.
     residual_m : ndarray of float64, shape (n,)
         Pseudorange minus what position and clock predict.
     sigma_m : ndarray of float64, shape (n,)
     statistic : ndarray of float64, shape (n,)
-        |residual| in its own standard deviations at the sigmas as given: the w-test of a used satellite, the
-        prediction error of an excluded one.
+        Residual of least squares, without its sign, in its own standard deviations at the sigmas as given:
+        the w-test of a used satellite, the prediction error of an excluded one.
     threshold : float
         Limit of the statistic at the false-alarm probability, all satellites together.
     mdb_m : ndarray of float64, shape (n,)
@@ -147,6 +150,7 @@ class Satellites:
     status: tuple[SatelliteStatus, ...]
     inlier: BoolArray
     fault_probability: FloatArray
+    weight: FloatArray
     residual_m: FloatArray
     sigma_m: FloatArray
     statistic: FloatArray

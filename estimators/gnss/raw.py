@@ -114,7 +114,7 @@ def correct_ranges(
     >>> ranges = np.linalg.norm(satellites - here, axis=1) + 2.3
     >>> observed = correct_ranges(satellites, ranges, time_gps=np.datetime64("2024-05-01"), rotated=True)
     >>> observed.troposphere_m.round(1).tolist()
-    [2.4, 4.6, 2.6, 3.7, 3.9, 2.5]
+    [2.4, 4.6, 2.6, 3.7, 3.8, 2.5]
     """
     settings = CorrectionSettings(klobuchar, second_m is not None, troposphere, weights, mask_deg)
     ranges = as_vector(pseudoranges_m, "pseudoranges_m")

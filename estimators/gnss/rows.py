@@ -53,6 +53,7 @@ def on_input_rows(fix: Fix, observed: Observed, masked: BoolArray) -> Fix:
         status=tuple(status),
         inlier=flags(inner.inlier),
         fault_probability=spread(inner.fault_probability),
+        weight=spread(inner.weight),
         residual_m=spread(inner.residual_m),
         sigma_m=spread(inner.sigma_m),
         statistic=spread(inner.statistic),

@@ -68,6 +68,7 @@ class SatelliteColumns(Answer):
     system: list[str]
     status: list[SatelliteState]
     fault_probability: Numbers
+    weight: Annotated[Numbers, Field(description="What the range counts, from 0 to 1, beside its sigma.")]
     residual_m: Numbers
     sigma_m: Numbers
     statistic: Numbers

@@ -10,11 +10,18 @@ import pytest
 from benchmarks.positions import rtklib
 from benchmarks.positions.answers import Answer, horizontal_error, judge
 from benchmarks.positions.cells import measure_bed, measure_protection, simulated_bed
+from benchmarks.positions.clean import (
+    AUTO,
+    RTKLIB_AS_IS,
+    RTKLIB_ONE_MESSAGE,
+    CleanCell,
+    measure_clean,
+)
 from benchmarks.positions.faults import SIZES, inject
 from benchmarks.positions.ours import answer_by_auto, answer_by_method
 from benchmarks.positions.page import describe_versions, write_page
 from benchmarks.positions.peers import answer_by_peer, peer_version
-from benchmarks.positions.sky import STATIONS, read_station, simulate_sky
+from benchmarks.positions.sky import OPEN_SKIES, STATIONS, Station, read_station, simulate_sky
 from estimators.geodesy.ellipsoid import to_geodetic
 from estimators.geodesy.local_frame import enu_axes
 from tests.external import require_program
@@ -96,6 +103,30 @@ def test_faults_in_a_file_are_what_rtklib_sees(gnss_data: Path) -> None:
     assert faulty[1] > 5.0
 
 
+@pytest.mark.parametrize("station", OPEN_SKIES[:2] + OPEN_SKIES[3:5], ids=lambda station: station.title)
+def test_positions_of_whole_files_are_not_worse_than_rtklibs(station: Station, gnss_data: Path) -> None:
+    require_program(rtklib.PROGRAM)
+    cells = {cell.contender: cell for cell in measure_clean([station], gnss_data, lambda _: None)}
+    ours = cells[AUTO]
+    assert ours.epochs >= 700
+    for theirs in (RTKLIB_AS_IS, RTKLIB_ONE_MESSAGE):
+        if theirs in cells:
+            for our, their in zip(ours.horizontal_m, cells[theirs].horizontal_m, strict=True):
+                assert our < their + 0.02
+
+
+def test_rtklib_loses_group_delays_where_galileos_messages_are_mixed(gnss_data: Path) -> None:
+    require_program(rtklib.PROGRAM)
+    esbc = OPEN_SKIES[1]
+    mixed, inav = (rtklib.clean_positions(esbc, gnss_data, one_message=alone) for alone in (False, True))
+    errors = [
+        [horizontal_error(found[at], np.array(esbc.truth_m)) for at in sorted(found)]
+        for found in (mixed, inav)
+    ]
+    assert len(mixed) == len(inav) == 720
+    assert np.quantile(errors[0], 0.95) > 1.2 * np.quantile(errors[1], 0.95)
+
+
 def judge_all(station: object, data: Path, faulty: list[object]) -> tuple[float, float]:
     """Percent right, and percent of all satellites that were left out."""
     answers, ms = rtklib.answer_by_rtklib(station, data, faulty)  # type: ignore[arg-type]
@@ -128,7 +159,9 @@ def test_what_was_measured_becomes_a_page(tmp_path: Path) -> None:
     said: list[str] = []
     cells = measure_bed(bed, 1, said.append)
     assert len(cells) == len(said) == 2 * (1 + 4 * len(SIZES))
-    page = write_page(cells, measure_protection(5, 1, said.append), ["nobody"], tmp_path).read_text()
+    clean = [CleanCell("a file", AUTO, 7, (0.1, 0.2), (0.3, 0.4), (0.5, 0.6))]
+    page = write_page(cells, clean, measure_protection(5, 1, said.append), ["nobody"], tmp_path).read_text()
+    assert "| a file | 7 | auto | 0.10 / 0.20 | 0.30 / 0.40 | 0.50 / 0.60 |" in page
     assert page.count("\n| 3 of ") == len(SIZES)
     assert "| ols |" in page
     assert "nobody" in page

@@ -49,10 +49,22 @@ def test_klobuchar_gives_the_delays_of_rtklib(esbc: Recorded) -> None:
     assert np.abs(delay - c["iono_m"])[at_l1].max() < 0.002
 
 
-def test_saastamoinen_gives_the_delays_of_rtklib(esbc: Recorded) -> None:
+def test_saastamoinen_gives_the_zenith_delay_of_rtklib(esbc: Recorded) -> None:
     latitude, _, height = to_geodetic(esbc.truth)
-    delay = saastamoinen_delay(latitude, height, esbc.columns["el_deg"])
-    assert np.abs(delay - esbc.columns["tropo_m"]).max() < 0.002
+    c = esbc.columns
+    zenith = c["tropo_m"] * np.sin(np.radians(c["el_deg"]))
+    assert np.abs(saastamoinen_delay(latitude, height, 90.0) - zenith).max() < 0.001
+
+
+@pytest.mark.parametrize("elevation", [90.0, 60.0, 30.0, 15.0, 10.0, 7.0, 5.0])
+def test_aslant_the_troposphere_is_as_long_as_along_traced_rays(elevation: float) -> None:
+    # Niell 1996, "Global mapping functions for the atmosphere delay at radio wavelengths", table 3:
+    # hydrostatic, 45 degrees, yearly average.
+    a, b, c = 1.2465397e-3, 2.9288445e-3, 63.721774e-3
+    sine = np.sin(np.radians(elevation))
+    niell = (1.0 + a / (1.0 + b / (1.0 + c))) / (sine + a / (sine + b / (sine + c)))
+    delay = saastamoinen_delay(45.0, 0.0, [90.0, elevation])
+    assert delay[1] / delay[0] == pytest.approx(niell, rel=0.01)
 
 
 def test_the_atmosphere_is_found_from_a_cold_start(esbc: Recorded) -> None:
@@ -61,16 +73,21 @@ def test_the_atmosphere_is_found_from_a_cold_start(esbc: Recorded) -> None:
     c = esbc.columns
     assert rows.size == c["tow"].size
     assert np.abs(observed.elevation_deg - c["el_deg"][rows]).max() < 0.01
-    assert np.abs(observed.troposphere_m - c["tropo_m"][rows]).max() < 0.02
+    latitude, _, height = to_geodetic(esbc.truth)
+    troposphere = saastamoinen_delay(latitude, height, c["el_deg"][rows])
+    assert np.abs(observed.troposphere_m - troposphere).max() < 0.02
     # BeiDou on its own carrier; GLONASS satellites have one each, which this table does not say.
     known = np.array([esbc.satellite[row][0] != "R" for row in rows])
     assert np.abs(observed.ionosphere_m - c["iono_m"][rows])[known].max() < 0.01
     assert np.abs(observed.ionosphere_m - c["iono_m"][rows]).max() < 0.05
 
 
-def test_corrected_ranges_differ_from_those_of_rtklib_by_a_group_delay_per_satellite(esbc: Recorded) -> None:
+def test_but_for_the_troposphere_ranges_differ_from_rtklibs_by_a_group_delay_per_satellite(
+    esbc: Recorded,
+) -> None:
     observed = corrected(esbc)
-    difference = observed.table.pseudoranges_m - esbc.columns["corr_pr_m"][observed.source_row]
+    theirs = esbc.columns["corr_pr_m"] + esbc.columns["tropo_m"]
+    difference = observed.table.pseudoranges_m + observed.troposphere_m - theirs[observed.source_row]
     names = np.array(observed.table.names)
     gps = sorted({name for name in observed.table.names if name[0] == "G"})
     assert max(np.ptp(difference[names == name]) for name in gps) < 0.03

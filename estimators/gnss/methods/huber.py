@@ -15,10 +15,9 @@ import numpy as np
 from estimators.gnss.methods.protocol import Verdict
 from estimators.gnss.options import PositionOptions
 from estimators.gnss.snapshot.problem import Problem, solve_problem
+from estimators.gnss.snapshot.reweigh import TUNING
 from estimators.result import Ledger
 
-TUNING = 1.345
-"""95 % of the efficiency of least squares under Gaussian noise."""
 _STEPS = 200
 _SETTLED = 1e-9
 

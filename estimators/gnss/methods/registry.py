@@ -47,9 +47,10 @@ _ROWS = (
         "auto",
         "Automatic",
         "Weighs every set of faulty satellites by its posterior probability, leaves out the set whose "
-        "position is least likely to be far off, and says so when another leads elsewhere.",
+        "position is least likely to be far off, and says so when another leads elsewhere. Of the others, "
+        "those that agree less count less.",
         "Always, unless you want one particular method.",
-        "Plumbline; exact marginal likelihoods in parity space",
+        "Plumbline; exact marginal likelihoods in parity space; weights by Huber 1964, Proposal 2",
     ),
     PositionMethod(
         "p-ransac",

@@ -90,6 +90,7 @@ def satellites_to_dict(satellites: Satellites) -> dict[str, Any]:
         "system": list(satellites.system),
         "status": list(satellites.status),
         "fault_probability": finite(satellites.fault_probability),
+        "weight": finite(satellites.weight),
         "residual_m": finite(satellites.residual_m),
         "sigma_m": finite(satellites.sigma_m),
         "statistic": finite(satellites.statistic),

@@ -33,6 +33,7 @@ def fix_to_frame(fix: Fix) -> pd.DataFrame:
                 list(inner.status), categories=["used", "excluded", "untestable", "masked", "missing"]
             ),
             "fault_probability": inner.fault_probability,
+            "weight": inner.weight,
             "residual_m": inner.residual_m,
             "sigma_m": inner.sigma_m,
             "statistic": inner.statistic,

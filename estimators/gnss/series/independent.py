@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from estimators.arrays import FloatArray
 from estimators.gnss.fix import Fix
 from estimators.gnss.locate import locate
 from estimators.gnss.options import PositionOptions
@@ -120,7 +119,7 @@ def _satellites(answers: list[Fix | NoFit], observations: Observations) -> Serie
         status[row], reason[row] = "missing", "a number is missing"
     for row in np.flatnonzero(observations.left_out == MASKED):
         status[row], reason[row] = "masked", "under the elevation mask"
-    numbers = np.full((rows, 3), np.nan)
+    numbers = np.full((rows, 4), np.nan)
     inlier = np.zeros(rows, dtype=np.bool_)
     for k, fix in enumerate(answers):
         if isinstance(fix, NoFit):
@@ -129,8 +128,9 @@ def _satellites(answers: list[Fix | NoFit], observations: Observations) -> Serie
         inner = fix.satellites
         status[own], reason[own] = inner.status, inner.reason
         inlier[own] = inner.inlier
-        numbers[own] = np.stack([inner.fault_probability, inner.residual_m, inner.sigma_m], axis=1)
-    weight: FloatArray = np.where(np.isfinite(numbers[:, 0]), inlier.astype(np.float64), np.nan)
+        numbers[own] = np.stack(
+            [inner.fault_probability, inner.weight, inner.residual_m, inner.sigma_m], axis=1
+        )
     return SeriesSatellites(
         epoch=np.repeat(np.arange(len(answers)), np.diff(observations.offsets)).astype(np.int64),
         name=observations.name,
@@ -138,8 +138,8 @@ def _satellites(answers: list[Fix | NoFit], observations: Observations) -> Serie
         status=tuple(status),  # type: ignore[arg-type]
         inlier=inlier,
         fault_probability=numbers[:, 0].copy(),
-        weight=weight,
-        residual_m=numbers[:, 1].copy(),
-        sigma_m=numbers[:, 2].copy(),
+        weight=numbers[:, 1].copy(),
+        residual_m=numbers[:, 2].copy(),
+        sigma_m=numbers[:, 3].copy(),
         reason=tuple(reason),
     )

@@ -36,6 +36,7 @@ NUMBERS = 8
         types.boolean[::1],
         types.boolean[::1],
         types.float64[::1],
+        types.float64[::1],
         types.float64[:, ::1],
         types.float64[:, ::1],
         types.float64[:, ::1],
@@ -61,6 +62,7 @@ def answer_epochs(
     excluded: BoolArray,
     rival: BoolArray,
     probability: FloatArray,
+    weight: FloatArray,
     state: FloatArray,
     rival_position: FloatArray,
     numbers: FloatArray,
@@ -84,8 +86,8 @@ def answer_epochs(
         See :class:`estimators.gnss.options.PositionOptions`.
     limits : ndarray
         99.9 % limits of chi square, by degrees of freedom from 0.
-    excluded, rival, probability : ndarray, one entry per satellite and epoch
-        Out: left out of the answer, left out by the competing set, probability to be faulty.
+    excluded, rival, probability, weight : ndarray, one entry per satellite and epoch
+        Out: left out of the answer, left out by the competing set, probability to be faulty, what it counts.
     state : ndarray, shape (epochs, 3 + MOST_CLOCKS)
         Out: position and clocks in metres.
     rival_position : ndarray, shape (epochs, 3)
@@ -126,6 +128,7 @@ def answer_epochs(
             excluded[a:b],
             rival[a:b],
             probability[a:b],
+            weight[a:b],
             state[e, :p],
             rival_position[e],
             numbers[e],

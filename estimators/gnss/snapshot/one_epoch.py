@@ -1,8 +1,10 @@
 """One epoch through the compiled snapshot solver.
 
 Gauss-Newton from the Earth's centre over all satellites, the posterior over fault sets in parity space, a
-choice (or the caller's), the solution without the excluded satellites, and protection levels. After gross
-faults the linearisation point is far off, so the posterior is computed again about the new position.
+choice (or the caller's), the solution without the excluded satellites, and protection levels about it. After
+gross faults the linearisation point is far off, so the posterior is computed again about the new position.
+Where the posterior chose, the satellites left are weighed by how well they agree; the caller's choice is
+answered by plain least squares.
 """
 
 from __future__ import annotations
@@ -26,6 +28,7 @@ from estimators.gnss.snapshot.decision import (
 from estimators.gnss.snapshot.fault_sets import is_exhaustive, weigh_fault_sets
 from estimators.gnss.snapshot.linearise import factorise, fill_normal, iterate
 from estimators.gnss.snapshot.parity import fill_inverse, fill_parity
+from estimators.gnss.snapshot.reweigh import reweigh
 from estimators.gnss.snapshot.tails import solve_tail, tail
 from estimators.gnss.snapshot.untested import untested_weight
 from estimators.kernels import device
@@ -82,6 +85,7 @@ def answer_epoch(
     excluded: BoolArray,
     rival: BoolArray,
     probability: FloatArray,
+    weight: FloatArray,
     state: FloatArray,
     rival_position: FloatArray,
     numbers: FloatArray,
@@ -159,10 +163,6 @@ def answer_epoch(
             (state[0] - before[0]) ** 2 + (state[1] - before[1]) ** 2 + (state[2] - before[2]) ** 2
         )
         if far < _FAR_M or turn == _ROUNDS - 1:
-            # Local positions of the hypotheses, seen from the answer.
-            for k in range(3):
-                shift[k] = state[k] - before[k]
-            to_local(axes, shift, spread, moved)
             break
         for i in range(n):
             used[i] = True
@@ -171,9 +171,14 @@ def answer_epoch(
             return UNDETERMINED
 
     for i in range(n):
-        excluded[i] = False
-    for row in range(count):
-        excluded[kept[row]] = True
+        excluded[i] = not used[i]
+        weight[i] = 1.0 if used[i] else 0.0
+    if choose:
+        reweigh(A, z, used, state, weight)
+    # Local positions of the hypotheses, seen from the answer.
+    for k in range(3):
+        shift[k] = state[k] - before[k]
+    to_local(axes, shift, spread, moved)
     farthest, other = -1.0, -1
     for h in range(heavy):
         distance[h] = math.hypot(place[h, 0] - moved[0], place[h, 1] - moved[1])

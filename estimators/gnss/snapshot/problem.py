@@ -16,7 +16,7 @@ from estimators.kernels import kernel, ro
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """Linearised epoch about a solution; all in the units that whitening leaves.
+    """Linearised epoch about a position; all in the units that whitening leaves.
 
     Attributes
     ----------
@@ -27,7 +27,7 @@ class Problem:
     A : ndarray, shape (n, p)
         Whitened design.
     z : ndarray, shape (n,)
-        Whitened residuals.
+        Whitened residuals at the state.
     N : ndarray, shape (p, p)
         (A'A)^-1 over the rows used: the covariance of the state at unit noise scale.
     gain : ndarray, shape (p, n)
@@ -53,9 +53,15 @@ class Problem:
         return int(self.used.sum()) - self.state.size
 
     @property
+    def left_over(self) -> FloatArray:
+        """Whitened residuals of least squares over the rows used, whatever position the state is."""
+        return np.asarray(self.z - self.A @ (self.gain[:, self.used] @ self.z[self.used]))
+
+    @property
     def squares(self) -> float:
-        """Sum of squared whitened residuals over the rows used."""
-        return float(self.z[self.used] @ self.z[self.used])
+        """Least sum of squared whitened residuals over the rows used."""
+        left = self.left_over[self.used]
+        return float(left @ left)
 
 
 def solve_problem(table: EpochTable, used: BoolArray | None = None) -> Problem | None:
@@ -81,7 +87,7 @@ def solve_problem(table: EpochTable, used: BoolArray | None = None) -> Problem |
 
 
 def problem_at(table: EpochTable, state: FloatArray, used: BoolArray) -> Problem | None:
-    """Linearise about a state that is a solution already.
+    """Linearise about a state that lies close enough to the solution.
 
     Parameters
     ----------

@@ -32,7 +32,8 @@ class Solved:
         ``SOLVED`` and its neighbours in :mod:`estimators.gnss.snapshot.one_epoch`.
     state : ndarray, shape (epochs, 3 + MOST_CLOCKS)
     excluded, rival : ndarray of bool, shape (rows,)
-    fault_probability : ndarray, shape (rows,)
+    fault_probability, weight : ndarray, shape (rows,)
+        Weight: what a range counts in the answer, from 0 to 1.
     rival_position_m : ndarray, shape (epochs, 3)
     far_probability, hpl_m, vpl_m, squares, rival_probability, rival_distance_m : ndarray, shape (epochs,)
     weighed : ndarray of int64, shape (epochs,)
@@ -45,6 +46,7 @@ class Solved:
     excluded: BoolArray
     rival: BoolArray
     fault_probability: FloatArray
+    weight: FloatArray
     rival_position_m: FloatArray
     far_probability: FloatArray
     hpl_m: FloatArray
@@ -69,7 +71,7 @@ def solve_epochs(table: EpochTable, options: PositionOptions, excluded: BoolArra
     rows, epochs = table.pseudoranges_m.size, len(table)
     given = np.zeros(rows, dtype=np.bool_) if excluded is None else excluded
     left_out, rival = np.zeros(rows, dtype=np.bool_), np.zeros(rows, dtype=np.bool_)
-    probability = np.full(rows, np.nan)
+    probability, weight = np.full(rows, np.nan), np.full(rows, np.nan)
     state = np.full((epochs, 3 + MOST_CLOCKS), np.nan)
     rival_position = np.full((epochs, 3), np.nan)
     numbers = np.full((epochs, NUMBERS), np.nan)
@@ -93,6 +95,7 @@ def solve_epochs(table: EpochTable, options: PositionOptions, excluded: BoolArra
         left_out,
         rival,
         probability,
+        weight,
         state,
         rival_position,
         numbers,
@@ -104,6 +107,7 @@ def solve_epochs(table: EpochTable, options: PositionOptions, excluded: BoolArra
         excluded=left_out,
         rival=rival,
         fault_probability=probability,
+        weight=weight,
         rival_position_m=rival_position,
         far_probability=numbers[:, 0],
         hpl_m=numbers[:, 1],

@@ -60,6 +60,7 @@ def _satellites(fix: Fix) -> dict[str, Column]:
         "system": list(inner.system),
         "status": list(inner.status),
         "fault_probability": _finite(inner.fault_probability),
+        "weight": _finite(inner.weight),
         "residual_m": _finite(inner.residual_m),
         "sigma_m": _finite(inner.sigma_m),
         "statistic": _finite(inner.statistic),
