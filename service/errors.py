@@ -100,6 +100,12 @@ class ProblemType(Enum):
         "The ranges do not determine a position",
         "The reason says why; points.reason tells what became of every row.",
     )
+    no_track = (
+        "no-track",
+        422,
+        "The fixes do not determine a track",
+        "The reason says why; points.reason tells what became of every row.",
+    )
     internal_error = (
         "internal-error",
         500,

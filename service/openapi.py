@@ -22,6 +22,8 @@ from service.schemas.fixes import FeatureAnswer, FeatureCollectionAnswer
 from service.schemas.options import TrendRequest
 from service.schemas.positions import PositionRequest
 from service.schemas.problems import ProblemAnswer, problem_responses
+from service.schemas.tracks import TrackFeaturesAnswer
+from service.schemas.trajectories import TrackRequest
 from service.security.keys import is_open
 
 #: Version of the interface, not of the product: it changes when a client could notice.
@@ -38,6 +40,8 @@ DESCRIBED: tuple[type[BaseModel], ...] = (
     PositionRequest,
     FeatureAnswer,
     FeatureCollectionAnswer,
+    TrackRequest,
+    TrackFeaturesAnswer,
     ProblemAnswer,
 )
 

@@ -33,13 +33,15 @@ BREATH_SECONDS = 0.005
 #: A kernel comes from the cache in less; the log is not written to by a thread that outlives its app.
 STOP_SECONDS = 1.0
 
-#: What the first batch, the first crossing of a curve and the first file of a receiver import; it is there
+#: What the first batch, the first crossing of a curve, the first file and the first track import; it is there
 #: before they come.
 LATE_MODULES = (
     "service.batches",
     "service.codecs.batch.parquet",
     "scipy.optimize",
     "service.codecs.positions.tables",
+    "service.codecs.trajectories.files",
+    "service.codecs.trajectories.files_out",
 )
 
 #: Where the extra [rinex] is installed.

@@ -13,18 +13,8 @@ router = APIRouter(prefix="/v1", tags=["catalogue"])
 @router.get("/methods", summary="List the methods", operation_id="list_methods")
 async def list_methods() -> MethodsAnswer:
     """Every named method: what it does, when to use it, where it comes from."""
-    rows = [
-        MethodAnswer(
-            name=row.name,
-            title=row.title,
-            summary=row.summary,
-            when_to_use=row.when_to_use,
-            source=row.source,
-            robust=row.robust,
-        )
-        for row in estimators.methods().values()
-    ]
-    return MethodsAnswer(methods=rows)
+    rows = estimators.methods().values()
+    return MethodsAnswer(methods=[MethodAnswer.model_validate(row, from_attributes=True) for row in rows])
 
 
 @router.get("/models", summary="List the models", operation_id="list_models")

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 from fastapi import Request, Response
 
+from service.codecs.limits import UNPACKED_PER_BODY, Limits
+from service.codecs.sent import Sent
 from service.compute import Compute, Patience
 from service.errors import Problem, ProblemType
 from service.observability.metrics import Metrics
 from service.observability.timing import Stopwatch
 from service.security.headers import PICTURE_POLICY
+from service.settings import Settings
+
+Query = TypeVar("Query")
 
 
 class AnswerForm(Protocol):
@@ -38,6 +43,13 @@ async def read_body(request: Request) -> bytes:
     if not body or body.isspace():
         raise Problem(ProblemType.empty_body)
     return body
+
+
+def sent_by(request: Request, body: bytes, query: Query, patience: Patience) -> Sent[Query]:
+    """Put a body together with what bounds its reading."""
+    settings: Settings = request.app.state.settings
+    limits = Limits(settings.max_points, settings.max_series, UNPACKED_PER_BODY * settings.max_body_bytes)
+    return Sent(body, request.headers.get("content-type", ""), query, limits, patience.check)
 
 
 async def compute_answer(

@@ -8,10 +8,8 @@ from fastapi import APIRouter, Query, Request, Response
 
 import estimators
 from estimators.consensus.cancellation import cancelled_by
-from service.api.computing import compute_answer, read_body
-from service.codecs.limits import UNPACKED_PER_BODY, Limits
+from service.api.computing import compute_answer, read_body, sent_by
 from service.codecs.negotiation import media_type_of
-from service.codecs.positions.columns import Sent
 from service.codecs.positions.pictures import check_picture
 from service.codecs.positions.registry import (
     READERS,
@@ -21,6 +19,7 @@ from service.codecs.positions.registry import (
     RangeReader,
     choose_position_writer,
 )
+from service.codecs.sent import Sent
 from service.compute import Patience
 from service.errors import ProblemType
 from service.observability.timing import Stopwatch
@@ -28,7 +27,6 @@ from service.schemas.answers import MethodAnswer
 from service.schemas.fixes import PositionAnswer, PositionMethodsAnswer, PositionsAnswer
 from service.schemas.position_query import PositionQuery
 from service.schemas.responses import computed_responses
-from service.settings import Settings
 
 router = APIRouter(prefix="/v1", tags=["positions"])
 
@@ -105,22 +103,23 @@ async def find(request: Request, query: Annotated[PositionQuery, Query()]) -> Re
     """
     headers = request.headers
     writer = choose_position_writer(headers.get("accept"), query.format)
-    content_type = headers.get("content-type")
-    reader = READERS[media_type_of(content_type, headers.get("content-encoding"), tuple(READERS))]
+    media_type = media_type_of(headers.get("content-type"), headers.get("content-encoding"), tuple(READERS))
+    reader = READERS[media_type]
     body = await read_body(request)
-    settings: Settings = request.app.state.settings
-    limits = Limits(settings.max_points, None, UNPACKED_PER_BODY * settings.max_body_bytes)
     watch = Stopwatch()
 
     def job(patience: Patience) -> tuple[bytes, int]:
-        sent = Sent(body, content_type or "", query, limits, patience.check)
-        return answer(sent, reader, writer, watch, patience)
+        return answer(sent_by(request, body, query, patience), reader, writer, watch, patience)
 
     return await compute_answer(request, writer, watch, job)
 
 
 def answer(
-    sent: Sent, reader: RangeReader, writer: PositionWriter, watch: Stopwatch, patience: Patience
+    sent: Sent[PositionQuery],
+    reader: RangeReader,
+    writer: PositionWriter,
+    watch: Stopwatch,
+    patience: Patience,
 ) -> tuple[bytes, int]:
     """Everything between a body and its answer; runs in a thread.
 
@@ -153,15 +152,7 @@ def answer(
 )
 async def list_position_methods() -> PositionMethodsAnswer:
     """Every method of fault exclusion: what it does, when to use it, where it comes from."""
-    rows = [
-        MethodAnswer(
-            name=row.name,
-            title=row.title,
-            summary=row.summary,
-            when_to_use=row.when_to_use,
-            source=row.source,
-            robust=row.robust,
-        )
-        for row in estimators.position_methods().values()
-    ]
-    return PositionMethodsAnswer(methods=rows)
+    rows = estimators.position_methods().values()
+    return PositionMethodsAnswer(
+        methods=[MethodAnswer.model_validate(row, from_attributes=True) for row in rows]
+    )

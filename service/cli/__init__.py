@@ -1,8 +1,8 @@
-"""The command ``plumbline``: fit a file or many series, locate, serve over HTTP, list methods and models.
+"""The command ``plumbline``: fit series, locate, clean tracks, serve over HTTP, list methods and models.
 
 The signatures are in :mod:`service.cli.commands`; each command's work is in a module of its own and is
-imported when it runs, so that ``--help`` answers at once. Exit codes: 0 done, 1 the data determine no trend
-or position, 2 bad input.
+imported when it runs, so that ``--help`` answers at once. Exit codes: 0 done, 1 the data determine no trend,
+position or track, 2 bad input.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import Annotated
 import typer
 
 from service.cli.commands.catalogue import methods, models
+from service.cli.commands.clean import clean
 from service.cli.commands.fit import fit
 from service.cli.commands.fit_many import fit_many
 from service.cli.commands.locate import locate
@@ -50,6 +51,7 @@ def plumbline(
 app.command()(fit)
 app.command(name="fit-many")(fit_many)
 app.command()(locate)
+app.command()(clean)
 app.command()(serve)
 app.command()(warm)
 app.command()(methods)

@@ -9,14 +9,14 @@ from pathlib import Path
 from typing import Any, Literal
 
 import typer
-from pydantic import ValidationError
 
 from service.cli.streams import NO_TREND, answers, fail, remark
-from service.codecs.arguments import from_validation
+from service.codecs.arguments import validated
 from service.codecs.limits import Limits
-from service.codecs.positions.columns import Recording, Sent, validated
+from service.codecs.positions.columns import Recording
 from service.codecs.positions.pictures import check_picture
 from service.codecs.positions.registry import READERS, WRITERS
+from service.codecs.sent import Sent
 from service.errors import Problem, ProblemType
 from service.positions.located import Located
 from service.positions.prepared import Prepared, prepare_recording
@@ -125,12 +125,7 @@ def _query(request: LocateRequest) -> PositionQuery:
         if len(request.truth) != len(TRUTH):
             fail("--truth: give latitude, longitude and height, such as 52.5,13.4,80.")
         given |= dict(zip(TRUTH, request.truth, strict=True))
-    try:
-        return PositionQuery.model_validate(
-            {name: value for name, value in given.items() if value is not None}
-        )
-    except ValidationError as error:
-        raise from_validation(error.errors(include_input=False, include_url=False)) from None
+    return validated(PositionQuery, {name: value for name, value in given.items() if value is not None})
 
 
 def _nobody_leaves() -> None:

@@ -1,16 +1,18 @@
-"""Arguments of the fit, validated by pydantic whatever format they came in."""
+"""Arguments, validated by pydantic whatever format they came in."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, TypeVar
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from service.errors import FieldError, Problem, ProblemType
 from service.schemas.options import FitArguments
 
 _EXPECTED = "Input should be "
+
+Arguments = TypeVar("Arguments", bound=BaseModel)
 
 
 def read_arguments(given: dict[str, Any]) -> FitArguments:
@@ -26,10 +28,41 @@ def read_arguments(given: dict[str, Any]) -> FitArguments:
     Problem
         Naming every argument that is wrong.
     """
+    return validated(FitArguments, given)
+
+
+def validated(model: type[Arguments], given: dict[str, Any]) -> Arguments:
+    """Validate arguments.
+
+    Raises
+    ------
+    Problem
+        Naming every argument that is wrong.
+    """
     try:
-        return FitArguments.model_validate(given)
+        return model.model_validate(given)
     except ValidationError as error:
         raise from_validation(error.errors(include_input=False, include_url=False)) from None
+
+
+def refuse_absent(names: Sequence[str]) -> None:
+    """Refuse a body without required columns, naming all of them."""
+    if names:
+        raise Problem(
+            ProblemType.invalid_value,
+            f"{', '.join(names)}: is required",
+            errors=[FieldError(name, "is required") for name in names],
+        )
+
+
+def refuse_beside_json(names: Sequence[str]) -> None:
+    """Refuse parameters of the query that a JSON body carries itself."""
+    if names:
+        raise Problem(
+            ProblemType.unknown_field,
+            "with a JSON body these belong into the body: " + ", ".join(names),
+            errors=[FieldError(name, "belongs into the body") for name in names],
+        )
 
 
 def from_validation(found: Any, skip: int = 0) -> Problem:

@@ -126,6 +126,13 @@ def from_epoch(
     return moments
 
 
+def are_whole(times: Times, form: TimeForm) -> bool:
+    """Whether times since 1970 are integers in their unit."""
+    if form.kind != "epoch":
+        return True
+    return not np.any(times.astype("datetime64[ns]").astype(np.int64) % UNIT_NANOSECONDS[form.unit or "s"])
+
+
 def _epoch_numbers(
     moments: npt.NDArray[np.datetime64], missing: npt.NDArray[np.bool_], factor: int
 ) -> WireTimes:

@@ -17,12 +17,12 @@ import orjson
 
 from estimators import Trend
 from estimators.trends.presentation.dictionary import fitted_values
-from service.codecs.arguments import read_arguments
+from service.codecs.arguments import read_arguments, refuse_beside_json
 from service.codecs.columns import Columns, TimeForm, Times, from_epoch
 from service.codecs.limits import check_names
 from service.codecs.moments import write_moments
 from service.codecs.times import parse_iso
-from service.errors import FieldError, Problem, ProblemType, invalid_value, unknown_fields
+from service.errors import Problem, ProblemType, invalid_value, unknown_fields
 from service.schemas.fields import TimeUnit
 from service.schemas.options import AnswerQuery, FitArguments, TrendOptions, TrendQuery
 
@@ -58,7 +58,8 @@ _BYTE = re.compile(r"\(byte (\d+)\)")
 _ROW = re.compile(r"\$\[(\d+)\]")
 _NOT_FINITE = re.compile(rb"-?(nan|inf)", re.IGNORECASE)
 _OPEN_COLUMN = re.compile(
-    rb'"(time|value|weight|predict|lat|lon|[xyz]_m|pseudorange_m|sigma_m|cn0_dbhz)"\s*:\s*\[[^\]]*\Z'
+    rb'"(time|value|weight|predict|lat|lon|height|accuracy|[xyz]_m|pseudorange_m|sigma_m|cn0_dbhz)"'
+    rb"\s*:\s*\[[^\]]*\Z"
 )
 
 
@@ -70,16 +71,14 @@ def read_json(body: bytes, query: TrendQuery) -> tuple[Columns, FitArguments]:
     Problem
         If the body is not JSON, holds unknown or repeated keys, or a value of the wrong type.
     """
-    misplaced = query.csv_only()
-    if misplaced:
-        raise Problem(
-            ProblemType.unknown_field,
-            "with a JSON body these belong into the body: " + ", ".join(misplaced),
-            errors=[FieldError(name, "belongs into the body") for name in misplaced],
-        )
+    refuse_beside_json(query.csv_only())
     fields = read_object(body, FIELDS, "")
     arguments = read_arguments(
-        {name: _scalar(raw, name) for name, raw in fields.items() if name not in COLUMN_FIELDS}
+        {
+            name: read_argument(raw, name, tuple(TrendOptions.model_fields))
+            for name, raw in fields.items()
+            if name not in COLUMN_FIELDS
+        }
     )
     for name in ("time", "value"):
         if name not in fields:
@@ -188,13 +187,11 @@ def _malformed(body: bytes, error: Exception) -> Problem:
     return Problem(ProblemType.malformed_body, f"the JSON is broken at byte {place}")
 
 
-def _scalar(raw: msgspec.Raw, name: str) -> Any:
+def read_argument(raw: msgspec.Raw, name: str, options: tuple[str, ...] = ()) -> Any:
     """Python value of an argument; nested options are checked for repeated keys as the body is."""
     if name == "options":
-        known = tuple(TrendOptions.model_fields)
-        return {
-            key: _scalar(text, f"options.{key}") for key, text in read_object(raw, known, "options.").items()
-        }
+        inner = read_object(raw, options, "options.")
+        return {key: read_argument(text, f"options.{key}") for key, text in inner.items()}
     try:
         return _ANY.decode(raw)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:

@@ -229,14 +229,19 @@ class TrendAnswer(Answer):
     ] = None
 
 
-class MethodAnswer(Answer):
-    """A named method."""
+class DescribedAnswer(Answer):
+    """What people choose a method by."""
 
     name: str
     title: str
     summary: str
     when_to_use: str
     source: Annotated[str, Field(description="Where the method comes from.")]
+
+
+class MethodAnswer(DescribedAnswer):
+    """A named method."""
+
     robust: bool
 
 

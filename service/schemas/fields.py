@@ -23,23 +23,20 @@ AnswerFormat = Literal["json", "csv", "svg", "png"]
 Theme = Literal["light", "dark"]
 
 
-def _known_method(name: str) -> str:
-    return _one_of(name, METHOD_NAMES)
+def one_of(known: tuple[str, ...]) -> AfterValidator:
+    """Make a validator that refuses a name that is not in a registry, and lists those that are."""
 
+    def check(name: str) -> str:
+        if name not in known:
+            raise PydanticCustomError("unknown_name", "must be one of: {names}", {"names": ", ".join(known)})
+        return name
 
-def _known_model(name: str) -> str:
-    return _one_of(name, MODEL_NAMES)
-
-
-def _one_of(name: str, known: tuple[str, ...]) -> str:
-    if name not in known:
-        raise PydanticCustomError("unknown_name", "must be one of: {names}", {"names": ", ".join(known)})
-    return name
+    return AfterValidator(check)
 
 
 Method = Annotated[
     str,
-    AfterValidator(_known_method),
+    one_of(METHOD_NAMES),
     Field(
         description="How the trend is found; `/v1/methods` describes each.",
         json_schema_extra={"enum": list(METHOD_NAMES)},
@@ -47,7 +44,7 @@ Method = Annotated[
 ]
 Model = Annotated[
     str,
-    AfterValidator(_known_model),
+    one_of(MODEL_NAMES),
     Field(
         description="Shape of the trend; `/v1/models` describes each.",
         json_schema_extra={"enum": list(MODEL_NAMES)},

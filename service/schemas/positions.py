@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
-from pydantic_core import PydanticCustomError
+from pydantic import BaseModel, ConfigDict, Field
 
 import estimators
 from estimators import PositionOptions
-from service.schemas.fields import TimeUnit
+from service.schemas.fields import TimeUnit, one_of
 
 Motion = Literal["auto", "static", "moving", "independent"]
 Surroundings = Literal["auto", "open", "city"]
@@ -18,17 +17,11 @@ DEFAULTS = PositionOptions()
 METHODS = tuple(estimators.position_methods())
 
 
-def _known_method(name: str) -> str:
-    if name not in METHODS:
-        raise PydanticCustomError("unknown_name", "must be one of: {names}", {"names": ", ".join(METHODS)})
-    return name
-
-
 Probability = Annotated[float, Field(gt=0.0, lt=1.0)]
 Positive = Annotated[float, Field(gt=0.0, le=1e9)]
 Method = Annotated[
     str,
-    AfterValidator(_known_method),
+    one_of(METHODS),
     Field(
         description="How faults are found; `/v1/position-methods` describes each. Of many epochs, any other "
         "than `auto` takes each epoch by itself.",

@@ -45,13 +45,13 @@ class ProblemAnswer(BaseModel):
     limit: Annotated[int | None, Field(description="413: bytes or rows that are taken.")] = None
     reason: Annotated[
         NoFitReason | NoPositionReason | None,
-        Field(description="no-fit, no-position: why there is no trend, or no position."),
+        Field(description="no-fit, no-position, no-track: why there is none."),
     ] = None
     points: Annotated[
-        NoFitPoints | None, Field(description="no-fit, no-position: what became of every row.")
+        NoFitPoints | None, Field(description="no-fit, no-position, no-track: what became of every row.")
     ] = None
     notices: Annotated[
-        list[NoticeAnswer] | None, Field(description="no-fit, no-position: typed warnings.")
+        list[NoticeAnswer] | None, Field(description="no-fit, no-position, no-track: typed warnings.")
     ] = None
 
 

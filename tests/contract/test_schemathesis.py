@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gzip
+import json
 from typing import Any
 
 import pyarrow as pa
@@ -12,8 +14,11 @@ from schemathesis.checks import not_a_server_error
 from schemathesis.specs.openapi.checks import positive_data_acceptance
 
 from service.codecs.batch.registry import ARROW_FILE, ARROW_STREAM, PARQUET
+from service.codecs.trajectories.registry import GPX
 from service.main import create_app
 from service.settings import Settings
+from tests.service.fixes import as_csv as as_csv_track
+from tests.service.fixes import as_geojson, as_gpx, as_kml
 from tests.service.tables import as_csv, as_file, as_parquet, as_stream
 
 ROWS = st.lists(
@@ -22,9 +27,24 @@ ROWS = st.lists(
 
 
 def table(rows: list[tuple[int, float]]) -> pa.Table:
-    """Two series, or one where nobody asks for names."""
+    """Two series, or one where nobody asks for names, of a device that moves."""
     times, values = zip(*rows, strict=True)
-    return pa.table({"series": [f"s{row % 2}" for row in range(len(rows))], "time": times, "value": values})
+    return pa.table(
+        {
+            "series": [f"s{row % 2}" for row in range(len(rows))],
+            "time": times,
+            "value": values,
+            "lat": [value / 1e4 for value in values],
+            "lon": [value / 1e4 for value in values],
+        }
+    )
+
+
+def track(rows: list[tuple[int, float]]) -> dict[str, Any]:
+    """The same rows as fixes with points in time."""
+    times = [f"2024-05-01T{time // 3600 % 24:02d}:{time // 60 % 60:02d}:{time % 60:02d}Z" for time, _ in rows]
+    places = [value / 1e4 for _, value in rows]
+    return {"time": times, "lat": places, "lon": places}
 
 
 for media_type, write in (
@@ -34,6 +54,15 @@ for media_type, write in (
     (PARQUET, as_parquet),
 ):
     schemathesis.openapi.media_type(media_type, ROWS.map(table).map(write))
+for media_type, write_track in (
+    (GPX, as_gpx),
+    ("application/vnd.google-earth.kml+xml", as_kml),
+    ("application/geo+json", lambda fields: json.dumps(as_geojson(fields)).encode()),
+    ("application/octet-stream", lambda fields: gzip.compress(as_csv_track(fields))),
+):
+    schemathesis.openapi.media_type(media_type, ROWS.map(track).map(write_track))
+for media_type in ("application/vnd.google-earth.kmz", "application/vnd.ant.fit", "application/vnd.nmea"):
+    schemathesis.openapi.media_type(media_type, st.binary())
 
 api = schemathesis.openapi.from_asgi(
     "/openapi.json", create_app(Settings(log_level="error", deadline_seconds=60))

@@ -15,6 +15,7 @@ import sidereon
 from service.errors import ProblemType
 from service.schemas.fixes import FeatureCollectionAnswer, PositionAnswer, PositionsAnswer
 from tests.service.conftest import MakeClient
+from tests.service.problems import refused
 from tests.service.server import Server, serve
 
 BODY_LIMIT = 400_000
@@ -53,15 +54,6 @@ def phone(gnss_data: Path) -> tuple[bytes, bytes]:
 def upload(server: Server, *parts: tuple[str, bytes], **params: Any) -> httpx2.Response:
     files = [(name, (f"{name}.file", content)) for name, content in parts]
     return httpx2.post(f"{server.url}/v1/positions", files=files, params=params, timeout=60)
-
-
-def refused(response: httpx2.Response, kind: ProblemType, field: str | None) -> str:
-    problem = response.json()
-    assert response.status_code == kind.status, problem
-    assert response.headers["content-type"] == "application/problem+json"
-    assert (problem["type"], problem.get("field")) == (kind.uri, field)
-    detail: str = problem["detail"]
-    return detail
 
 
 def test_a_recorded_file_is_located_with_its_navigation_file(
@@ -164,21 +156,26 @@ def test_garbage_is_refused_as_the_part_that_it_is(
     server: Server, navigation: bytes, observations: bytes, word: str
 ) -> None:
     response = upload(server, ("observations", observations), ("navigation", navigation))
-    assert word in refused(response, ProblemType.invalid_value, "observations")
+    assert word in refused(response, ProblemType.invalid_value, "observations")["detail"]
 
 
 def test_files_in_each_others_place_are_refused(server: Server, epochs: str, navigation: bytes) -> None:
     swapped = upload(server, ("observations", navigation), ("navigation", epochs.encode()))
-    assert "send the navigation file here" in refused(swapped, ProblemType.invalid_value, "navigation")
+    assert (
+        "send the navigation file here" in refused(swapped, ProblemType.invalid_value, "navigation")["detail"]
+    )
     twice = upload(server, ("observations", navigation), ("navigation", navigation))
-    assert "send the observation file here" in refused(twice, ProblemType.invalid_value, "observations")
+    assert (
+        "send the observation file here"
+        in refused(twice, ProblemType.invalid_value, "observations")["detail"]
+    )
 
 
 def test_a_navigation_file_of_another_day_is_refused_with_both_dates(
     server: Server, epochs: str, phone: tuple[bytes, bytes]
 ) -> None:
     response = upload(server, ("observations", epochs.encode()), ("navigation", phone[1]))
-    detail = refused(response, ProblemType.invalid_value, "navigation")
+    detail = refused(response, ProblemType.invalid_value, "navigation")["detail"]
     assert "2021-03-19" in detail
     assert "2016-06-30" in detail
 
@@ -206,9 +203,9 @@ def test_a_file_that_unpacks_to_too_much_is_refused(server: Server, epochs: str,
     bomb = gzip.compress((header + body * (5 * BODY_LIMIT // len(body))).encode())
     assert len(bomb) < BODY_LIMIT // 4
     response = upload(server, ("observations", bomb), ("navigation", navigation))
-    assert "unpacks to more" in refused(response, ProblemType.invalid_value, "observations")
+    assert "unpacks to more" in refused(response, ProblemType.invalid_value, "observations")["detail"]
     response = upload(server, ("observations", epochs.encode()), ("navigation", bomb))
-    assert "unpacks to more" in refused(response, ProblemType.invalid_value, "navigation")
+    assert "unpacks to more" in refused(response, ProblemType.invalid_value, "navigation")["detail"]
 
 
 def test_more_ranges_than_the_limit_are_refused(server: Server, folder: Path, navigation: bytes) -> None:
@@ -260,7 +257,7 @@ def test_without_the_extra_for_rinex_the_problem_names_it(
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "sidereon", None)
     response = upload(server, ("observations", epochs.encode()), ("navigation", navigation))
-    assert "[rinex]" in refused(response, ProblemType.not_installed, None)
+    assert "[rinex]" in refused(response, ProblemType.not_installed, None)["detail"]
 
 
 def test_a_file_that_takes_longer_than_the_deadline_is_a_problem(

@@ -16,6 +16,7 @@ from estimators import Epochs, locate, locate_series
 from service.codecs.json import dumps
 from service.errors import ProblemType
 from service.schemas.fixes import PositionAnswer, PositionsAnswer
+from tests.service.problems import refused
 from tests.service.ranges import HERE, LIAR, NAMES, as_csv, epoch, epochs
 
 
@@ -31,14 +32,6 @@ def post_csv(client: TestClient, fields: dict[str, Any], **params: Any) -> Any:
 
 def satellites(fields: dict[str, Any]) -> np.ndarray:
     return np.column_stack([fields["x_m"], fields["y_m"], fields["z_m"]])
-
-
-def refused(response: Any, kind: ProblemType, field: str) -> dict[str, Any]:
-    problem: dict[str, Any] = response.json()
-    assert response.status_code == kind.status, problem
-    assert response.headers["content-type"] == "application/problem+json"
-    assert (problem["type"], problem.get("field")) == (kind.uri, field)
-    return problem
 
 
 def test_one_epoch_is_answered_with_the_dict_of_the_library(client: TestClient) -> None:

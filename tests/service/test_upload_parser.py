@@ -7,8 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from service.codecs.limits import Limits
-from service.codecs.positions.columns import Recording, Sent
+from service.codecs.positions.columns import Recording
 from service.codecs.positions.upload import read_upload
+from service.codecs.sent import Sent
 from service.errors import Problem
 from service.schemas.position_query import PositionQuery
 

@@ -15,7 +15,7 @@ from typing import IO
 import numpy as np
 
 from estimators.adapters.tracks.assembly import RANGES, assemble, code_names
-from estimators.adapters.tracks.field_names import NAMES, find_columns
+from estimators.adapters.tracks.field_names import NAMES, ColumnError, find_columns
 from estimators.adapters.tracks.moments import Bytes, as_bytes
 from estimators.adapters.tracks.numbers import parse_numbers
 from estimators.adapters.tracks.recording import FIELD, Recording
@@ -66,8 +66,10 @@ def read_csv(
     missing = [column for column in ("time", "lat", "lon") if column not in named]
     if missing:
         shown = ", ".join(repr(name[:30]) for name in header[:12])
-        raise InputError(
-            FIELD, f"has no column for {', '.join(missing)} in its header {shown}; rename, or say which it is"
+        raise ColumnError(
+            FIELD,
+            f"has no column for {', '.join(missing)} in its header {shown}; rename, or say which it is",
+            tuple(missing),
         )
     table = _Table({column: header.index(name) for column, name in named.items()}, delimiter)
     rows = csv.reader(lines, delimiter=delimiter, skipinitialspace=True, strict=True)
@@ -104,7 +106,7 @@ def _own_name(column: str, name: str, header: list[str]) -> str:
     if column not in NAMES:
         raise InputError("columns", f"{column[:40]!r} is none of {', '.join(NAMES)}")
     if name not in header:
-        raise InputError("columns", f"the file has no column {name[:40]!r} for {column}")
+        raise ColumnError("columns", f"the file has no column {name[:40]!r} for {column}", (column,))
     return name
 
 

@@ -10,6 +10,8 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from estimators.arrays import InputError
+
 NAMES: dict[str, tuple[str, ...]] = {
     "time": (
         *("time", "timestamp", "datetime", "timeutc", "utctime", "utc", "when", "gpstime", "recordedat"),
@@ -47,6 +49,21 @@ NAMES: dict[str, tuple[str, ...]] = {
 
 _PLACES = {alias: (column, rank) for column, aliases in NAMES.items() for rank, alias in enumerate(aliases)}
 _PUNCTUATION = re.compile(r"[\W_]+")
+
+
+class ColumnError(InputError):
+    """A table lacks columns; for callers who must not repeat what stands in its header.
+
+    Parameters
+    ----------
+    field, message : str
+    columns : tuple of str
+        What is missing, as in :data:`NAMES`.
+    """
+
+    def __init__(self, field: str, message: str, columns: tuple[str, ...]) -> None:
+        super().__init__(field, message)
+        self.columns = columns
 
 
 def find_columns(names: Sequence[str]) -> dict[str, str]:

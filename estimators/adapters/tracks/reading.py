@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from estimators.adapters.tracks.csv_reader import read_csv
 from estimators.adapters.tracks.fit_reader import SIGNATURE, read_fit
@@ -35,6 +35,7 @@ def read_track(
     columns: Mapping[str, str] | None = None,
     time_unit: TimeUnit | None = None,
     most_bytes: int = MOST_BYTES,
+    check: Callable[[], object] | None = None,
 ) -> Recording:
     r"""Read a recorded track.
 
@@ -51,6 +52,8 @@ def read_track(
         size; seconds stay plain numbers.
     most_bytes : int
         Unpacked size above which a file is refused. Default: 1 GiB.
+    check : callable, optional
+        Called between pieces of the file; it may raise to end the reading.
 
     Returns
     -------
@@ -60,7 +63,8 @@ def read_track(
     Raises
     ------
     InputError
-        If the file is of no known format, damaged, too large, or holds no track with times.
+        If the file is of no known format, damaged, or holds no track with times; of the subclass
+        :class:`~estimators.adapters.tracks.source.TooLargeError` if it is too large.
 
     Examples
     --------
@@ -69,7 +73,7 @@ def read_track(
     >>> track.form, track.lat, track.fault, track.utc_offset_minutes
     ('csv', array([48.83,   nan]), array([0, 2], dtype=uint8), array([120, 120], dtype=int16))
     """
-    with open_track(source, most_bytes) as stream:
+    with open_track(source, most_bytes, check) as stream:
         head = stream.peek(_HEAD_BYTES)[:_HEAD_BYTES]
         form = _form_of(head)
         if form == "xml":

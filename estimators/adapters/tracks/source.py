@@ -10,6 +10,7 @@ import gzip
 import io
 import zipfile
 import zlib
+from collections.abc import Callable
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
@@ -30,7 +31,13 @@ _UNPACKED = frozenset({zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED})
 _GZIP, _ZIP = b"\x1f\x8b", b"PK\x03\x04"
 
 
-def open_track(source: Source, most_bytes: int = MOST_BYTES) -> io.BufferedReader:
+class TooLargeError(InputError):
+    """A file is larger than is read; callers that can tell so by a status of its own catch it apart."""
+
+
+def open_track(
+    source: Source, most_bytes: int = MOST_BYTES, check: Callable[[], object] | None = None
+) -> io.BufferedReader:
     """Open a file, unpack gzip or the KML of a KMZ archive, and bound what can be read.
 
     Parameters
@@ -38,6 +45,8 @@ def open_track(source: Source, most_bytes: int = MOST_BYTES) -> io.BufferedReade
     source : bytes or Path
     most_bytes : int
         Unpacked size above which reading fails.
+    check : callable, optional
+        Called before each piece is read; it may raise to end the reading.
 
     Raises
     ------
@@ -52,7 +61,7 @@ def open_track(source: Source, most_bytes: int = MOST_BYTES) -> io.BufferedReade
     """
     file = _open(source)
     try:
-        return io.BufferedReader(_Bounded(file, _unpacked(file), most_bytes), BUFFER_BYTES)
+        return io.BufferedReader(_Bounded(file, _unpacked(file), most_bytes, check), BUFFER_BYTES)
     except InputError:
         file.close()
         raise
@@ -97,11 +106,18 @@ def _open_archive(file: IO[bytes]) -> IO[bytes]:
 class _Bounded(io.RawIOBase):
     """A stream that refuses to give more than so many bytes."""
 
-    def __init__(self, file: IO[bytes], raw: IO[bytes] | gzip.GzipFile, most_bytes: int) -> None:
+    def __init__(
+        self,
+        file: IO[bytes],
+        raw: IO[bytes] | gzip.GzipFile,
+        most_bytes: int,
+        check: Callable[[], object] | None,
+    ) -> None:
         super().__init__()
         self._file = file
         self._raw = raw
         self._most_bytes = most_bytes
+        self._check = check
         self._given = 0
 
     def readable(self) -> bool:
@@ -114,6 +130,8 @@ class _Bounded(io.RawIOBase):
         super().close()
 
     def readinto(self, buffer: WriteableBuffer, /) -> int:
+        if self._check is not None:
+            self._check()
         view = memoryview(buffer).cast("B")
         try:
             piece = self._raw.read(len(view))
@@ -121,6 +139,6 @@ class _Bounded(io.RawIOBase):
             raise InputError(FIELD, "is damaged or ends too early; send it again") from error
         self._given += len(piece)
         if self._given > self._most_bytes:
-            raise InputError(FIELD, f"has more than {self._most_bytes} bytes; split it by time")
+            raise TooLargeError(FIELD, f"has more than {self._most_bytes} bytes; split it by time")
         view[: len(piece)] = piece
         return len(piece)

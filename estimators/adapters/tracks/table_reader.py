@@ -11,11 +11,11 @@ from typing import IO, Any
 import numpy as np
 
 from estimators.adapters.tracks.assembly import RANGES, assemble, code_names
-from estimators.adapters.tracks.field_names import find_columns
+from estimators.adapters.tracks.field_names import ColumnError, find_columns
 from estimators.adapters.tracks.moments import as_bytes
 from estimators.adapters.tracks.numbers import parse_numbers
 from estimators.adapters.tracks.recording import FIELD, Recording
-from estimators.adapters.tracks.source import MOST_BYTES
+from estimators.adapters.tracks.source import MOST_BYTES, TooLargeError
 from estimators.adapters.tracks.times import Timed, TimeUnit, times_of_cells, times_of_numbers
 from estimators.arrays import BoolArray, FloatArray, InputError
 
@@ -80,7 +80,7 @@ def _named(names: list[str], columns: Mapping[str, str]) -> dict[str, str]:
     named = find_columns(names)
     for column, name in columns.items():
         if name not in names:
-            raise InputError("columns", f"the file has no column {name[:40]!r} for {column[:40]}")
+            raise ColumnError("columns", f"the file has no column {name[:40]!r} for {column[:40]}", (column,))
         named[column] = name
     date = named.pop("date", None)
     if "time" not in named and date is not None:
@@ -88,15 +88,19 @@ def _named(names: list[str], columns: Mapping[str, str]) -> dict[str, str]:
     missing = [column for column in ("time", "lat", "lon") if column not in named]
     if missing:
         shown = ", ".join(repr(name[:30]) for name in names[:12])
-        raise InputError(
-            FIELD, f"has no column for {', '.join(missing)} among {shown}; rename, or say which it is"
+        raise ColumnError(
+            FIELD,
+            f"has no column for {', '.join(missing)} among {shown}; rename, or say which it is",
+            tuple(missing),
         )
     return named
 
 
 def _check_size(rows: int, columns: int, most_bytes: int) -> None:
     if rows * columns * 8 > most_bytes:
-        raise InputError(FIELD, f"has {rows} rows, more than fit into {most_bytes} bytes; split it by time")
+        raise TooLargeError(
+            FIELD, f"has {rows} rows, more than fit into {most_bytes} bytes; split it by time"
+        )
 
 
 def _recording(form: str, table: Any, names: dict[str, str], unit: TimeUnit | None) -> Recording:

@@ -52,8 +52,7 @@ def times_of_numbers(values: FloatArray, unreadable: BoolArray, unit: TimeUnit |
     array(['2023-11-14T22:13:20.000000000'], dtype='datetime64[ns]')
     """
     if unit is None:
-        size = _size(values)
-        unit = next((finer for border, finer in _BORDERS if size > border), None)
+        unit = unit_of(values)
         if unit is None:
             with np.errstate(invalid="ignore"):
                 sound = np.abs(values) <= _BORDERS[-1][0]
@@ -69,6 +68,19 @@ def times_of_numbers(values: FloatArray, unreadable: BoolArray, unit: TimeUnit |
     moments = (whole.astype(np.int64) * step + part).astype("datetime64[ns]")
     moments[~sound] = np.datetime64("NaT")
     return moments, None, unreadable | (~sound & ~np.isnan(values))
+
+
+def unit_of(values: FloatArray) -> TimeUnit | None:
+    """Tell a unit finer than the second by the size of times since 1970; None where there is none.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> unit_of(np.array([1.7e12])), unit_of(np.array([1.7e9]))
+    ('ms', None)
+    """
+    size = _size(values)
+    return next((unit for border, unit in _BORDERS if size > border), None)
 
 
 def times_of_cells(pieces: Sequence[Bytes], unit: TimeUnit | None = None) -> Timed:

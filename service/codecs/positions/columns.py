@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from pydantic import BaseModel, ValidationError
 
-from service.codecs.arguments import from_validation
+from service.codecs.arguments import validated
 from service.codecs.columns import TimeForm, Times
 from service.codecs.limits import Limits
-from service.errors import FieldError, Problem, ProblemType, invalid_value
-from service.schemas.position_query import PositionQuery
+from service.errors import invalid_value
 from service.schemas.positions import PositionArguments
 
 PLACES = ("x_m", "y_m", "z_m")
@@ -47,7 +45,6 @@ _LARGEST = 1e30
 _STRONGEST_DBHZ = 80.0
 
 Floats = npt.NDArray[np.float64]
-Arguments = TypeVar("Arguments", bound=BaseModel)
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,42 +102,6 @@ class Recording:
     navigation: Sequence[bytes | Path]
 
 
-@dataclass(frozen=True, slots=True)
-class Sent:
-    """A body, and what bounds its reading.
-
-    Attributes
-    ----------
-    content : bytes
-    content_type : str
-        With its parameters.
-    query : PositionQuery
-    limits : Limits
-    check : callable
-        Called between pieces; raises if nobody waits any more.
-    """
-
-    content: bytes
-    content_type: str
-    query: PositionQuery
-    limits: Limits
-    check: Callable[[], None]
-
-
-def validated(model: type[Arguments], given: dict[str, Any]) -> Arguments:
-    """Validate arguments.
-
-    Raises
-    ------
-    Problem
-        Naming every argument that is wrong.
-    """
-    try:
-        return model.model_validate(given)
-    except ValidationError as error:
-        raise from_validation(error.errors(include_input=False, include_url=False)) from None
-
-
 def table_arguments(given: dict[str, Any]) -> PositionArguments:
     """Validate the arguments of a table.
 
@@ -152,16 +113,6 @@ def table_arguments(given: dict[str, Any]) -> PositionArguments:
     if given.get("rotated") is None:
         raise invalid_value("rotated", _SAY_ROTATED)
     return validated(PositionArguments, given)
-
-
-def refuse_absent(names: Sequence[str]) -> None:
-    """Refuse a body without required columns, naming all of them."""
-    if names:
-        raise Problem(
-            ProblemType.invalid_value,
-            f"{', '.join(names)}: is required",
-            errors=[FieldError(name, "is required") for name in names],
-        )
 
 
 def checked_words(words: list[str], name: str) -> list[str]:

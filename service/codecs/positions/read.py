@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import msgspec
 
+from service.codecs.arguments import refuse_absent, refuse_beside_json
 from service.codecs.columns import TimeForm, Times
 from service.codecs.csv import read_cells, read_time_cells, split_table
-from service.codecs.json import decode_column, is_null, read_numbers, read_object, read_times
+from service.codecs.json import (
+    decode_column,
+    is_null,
+    read_argument,
+    read_numbers,
+    read_object,
+    read_times,
+)
 from service.codecs.positions.columns import (
     FIELDS,
     NUMBERS,
@@ -16,19 +22,18 @@ from service.codecs.positions.columns import (
     REQUIRED,
     WORDS,
     RangeColumns,
-    Sent,
     checked_words,
-    refuse_absent,
     table_arguments,
 )
-from service.errors import FieldError, Problem, ProblemType, invalid_value
+from service.codecs.sent import Sent
+from service.errors import invalid_value
+from service.schemas.position_query import PositionQuery
 from service.schemas.positions import PositionArguments, PositionSettings
 
 _WORD_LIST = msgspec.json.Decoder(list[str])
-_ANY = msgspec.json.Decoder(Any)
 
 
-def read_json_ranges(sent: Sent) -> tuple[RangeColumns, PositionArguments]:
+def read_json_ranges(sent: Sent[PositionQuery]) -> tuple[RangeColumns, PositionArguments]:
     """Columns and arguments of a JSON body.
 
     Raises
@@ -36,17 +41,15 @@ def read_json_ranges(sent: Sent) -> tuple[RangeColumns, PositionArguments]:
     Problem
         If the body is not JSON, holds unknown or repeated keys, or a value of the wrong type.
     """
-    misplaced = sent.query.not_json()
-    if misplaced:
-        raise Problem(
-            ProblemType.unknown_field,
-            "with a JSON body these belong into the body: " + ", ".join(misplaced),
-            errors=[FieldError(name, "belongs into the body") for name in misplaced],
-        )
+    refuse_beside_json(sent.query.not_json())
     columns = (*FIELDS, *RAW_NUMBERS)
     fields = read_object(sent.content, (*columns, *PositionArguments.model_fields), "")
     arguments = table_arguments(
-        {name: _argument(raw, name) for name, raw in fields.items() if name not in columns}
+        {
+            name: read_argument(raw, name, tuple(PositionSettings.model_fields))
+            for name, raw in fields.items()
+            if name not in columns
+        }
     )
     refuse_absent([name for name in REQUIRED if is_null(fields.get(name))])
     numbers = {
@@ -66,7 +69,7 @@ def read_json_ranges(sent: Sent) -> tuple[RangeColumns, PositionArguments]:
     return RangeColumns(numbers, words, time, form), arguments
 
 
-def read_csv_ranges(sent: Sent) -> tuple[RangeColumns, PositionArguments]:
+def read_csv_ranges(sent: Sent[PositionQuery]) -> tuple[RangeColumns, PositionArguments]:
     """Columns and arguments of a CSV body; the arguments come from the query string.
 
     Columns of other names are left alone, and without ``raw`` those that only raw pseudoranges have: tables
@@ -98,16 +101,3 @@ def read_csv_ranges(sent: Sent) -> tuple[RangeColumns, PositionArguments]:
     if "time" in cells:
         time, form = read_time_cells(cells["time"], "time", arguments.time_unit)
     return RangeColumns(numbers, words, time, form), arguments
-
-
-def _argument(raw: msgspec.Raw, name: str) -> Any:
-    if name == "options":
-        known = tuple(PositionSettings.model_fields)
-        inner = read_object(raw, known, "options.")
-        return {key: _argument(text, f"options.{key}") for key, text in inner.items()}
-    try:
-        return _ANY.decode(raw)
-    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise invalid_value(
-            name, "cannot be read; numbers must fit into 64 bits and text be UTF-8"
-        ) from error

@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING, Any, cast
 from service.codecs.batch.registry import ARROW_FILE, ARROW_STREAM, GEOJSON, PARQUET
 from service.codecs.offers import choose_offer
 from service.positions.prepared import Prepared, prepare_recording, prepare_table
-from service.schemas.position_query import PositionAnswerQuery, PositionFormat
+from service.schemas.position_query import PositionAnswerQuery, PositionFormat, PositionQuery
 
 if TYPE_CHECKING:
-    from service.codecs.positions.columns import RangeColumns, Recording, Sent
+    from service.codecs.positions.columns import RangeColumns, Recording
+    from service.codecs.sent import Sent
     from service.positions.located import Located
     from service.schemas.positions import PositionArguments, RecordingArguments
 
@@ -38,12 +39,16 @@ class RangeReader:
     codec: str
     is_recording: bool = False
 
-    def read(self, sent: Sent) -> Prepared:
+    def read(self, sent: Sent[PositionQuery]) -> Prepared:
         """Ranges of a body, read and checked."""
         if self.is_recording:
-            files = cast("Callable[[Sent], tuple[Recording, RecordingArguments]]", _find(self.codec))
+            files = cast(
+                "Callable[[Sent[PositionQuery]], tuple[Recording, RecordingArguments]]", _find(self.codec)
+            )
             return prepare_recording(*files(sent), sent.limits, sent.check)
-        table = cast("Callable[[Sent], tuple[RangeColumns, PositionArguments]]", _find(self.codec))
+        table = cast(
+            "Callable[[Sent[PositionQuery]], tuple[RangeColumns, PositionArguments]]", _find(self.codec)
+        )
         return prepare_table(*table(sent), sent.limits)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from service.codecs.arguments import refuse_absent
 from service.codecs.batch.arrow import take_arrow
 from service.codecs.batch.cells import counted_from, is_text, read_floats, read_times
 from service.codecs.batch.parquet import take_parquet
@@ -23,26 +24,28 @@ from service.codecs.positions.columns import (
     WORDS,
     Floats,
     RangeColumns,
-    Sent,
     checked_words,
-    refuse_absent,
     table_arguments,
 )
+from service.codecs.sent import Sent
 from service.errors import invalid_value
+from service.schemas.position_query import PositionQuery
 from service.schemas.positions import PositionArguments
 
 
-def read_arrow_ranges(sent: Sent) -> tuple[RangeColumns, PositionArguments]:
+def read_arrow_ranges(sent: Sent[PositionQuery]) -> tuple[RangeColumns, PositionArguments]:
     """Columns of an Arrow IPC stream or file; the arguments come from the query string."""
     return _read(sent, take_arrow)
 
 
-def read_parquet_ranges(sent: Sent) -> tuple[RangeColumns, PositionArguments]:
+def read_parquet_ranges(sent: Sent[PositionQuery]) -> tuple[RangeColumns, PositionArguments]:
     """Columns of a Parquet file; the arguments come from the query string."""
     return _read(sent, take_parquet)
 
 
-def _read(sent: Sent, take: Callable[[Any, Choice, Take], None]) -> tuple[RangeColumns, PositionArguments]:
+def _read(
+    sent: Sent[PositionQuery], take: Callable[[Any, Choice, Take], None]
+) -> tuple[RangeColumns, PositionArguments]:
     arguments = table_arguments(sent.query.arguments())
     wanted = (*FIELDS, *RAW_NUMBERS) if arguments.raw else FIELDS
     pieces = _Pieces(arguments)

@@ -1,0 +1,147 @@
+"""What a caller may ask of trajectories; the answers are in :mod:`service.schemas.tracks`."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+import estimators
+from service.schemas.fields import Level, TimeUnit, one_of
+
+TrackFormat = Literal["json", "geojson", "gpx", "csv", "arrow", "parquet"]
+
+METHODS = tuple(estimators.track_methods())
+
+
+Method = Annotated[
+    str,
+    one_of(METHODS),
+    Field(
+        description="How faulty fixes are found; `/v1/trajectory-methods` describes each.",
+        json_schema_extra={"enum": list(METHODS)},
+    ),
+]
+Sigma = Annotated[
+    float,
+    Field(
+        ge=1e-3,
+        le=1e4,
+        allow_inf_nan=False,
+        description="Standard deviation of a good fix, per axis, metres. Default: estimated.",
+    ),
+]
+MaxSpeed = Annotated[
+    float,
+    Field(
+        gt=0,
+        le=1e6,
+        allow_inf_nan=False,
+        description="What moves faster is a fault, m/s. Default: no limit; 50 for the method `speed-gate`.",
+    ),
+]
+Unit = Annotated[
+    TimeUnit,
+    Field(
+        description="Unit of times that are numbers since 1970. Default: units finer than the second are "
+        "told by the size of the numbers; other numbers are seconds since any zero."
+    ),
+]
+ColumnName = Annotated[str, Field(max_length=1_000)]
+
+
+class TrackArguments(BaseModel):
+    """Keys of a JSON body beside its columns, and the arguments of files."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    method: Method = "auto"
+    level: Level = 0.95
+    sigma_m: Sigma | None = None
+    max_speed_mps: MaxSpeed | None = None
+    time_unit: Unit | None = None
+
+
+class TrackRequest(TrackArguments):
+    """Fixes of one receiver, or of many with `device`. One entry per fix, in any order; null is missing.
+
+    This class documents the body; its columns are decoded straight into arrays by the JSON codec.
+    """
+
+    time: Annotated[
+        list[int | float | str | None],
+        Field(
+            min_length=1,
+            description="Seconds, numbers since 1970, or ISO 8601 with an offset or Z, which is kept. ISO "
+            "8601 without an offset is taken as UTC.",
+        ),
+    ]
+    lat: Annotated[list[float | None], Field(min_length=1, description="Degrees north, WGS 84.")]
+    lon: Annotated[list[float | None], Field(min_length=1, description="Degrees east, -180 to 360.")]
+    device: Annotated[
+        list[str | int | None] | None,
+        Field(description="Whose fix it is; with it the answer has a track for each device."),
+    ] = None
+    height: Annotated[list[float | None] | None, Field(description="Metres.")] = None
+    accuracy: Annotated[
+        list[float | None] | None,
+        Field(description="Radius about each fix that holds 68 % as the receiver reports it, metres."),
+    ] = None
+
+
+class TrackAnswerQuery(BaseModel):
+    """Query parameters that shape the answer, whatever the body's media type."""
+
+    format: Annotated[
+        TrackFormat | None, Field(description="Format of the answer; takes precedence over `Accept`.")
+    ] = None
+    points: Annotated[
+        bool | None,
+        Field(
+            description="JSON: whether the answer has the columns per fix (default true). GeoJSON: whether "
+            "it has a point per fix with its label instead of lines (default false)."
+        ),
+    ] = None
+
+
+class TrackQuery(TrackAnswerQuery):
+    """Query parameters of ``POST /v1/trajectories``; JSON bodies carry the arguments themselves."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    method: Method | None = None
+    level: Level | None = None
+    sigma_m: Sigma | None = None
+    max_speed_mps: MaxSpeed | None = None
+    time_unit: Unit | None = None
+    time_column: Annotated[
+        ColumnName | None, Field(description="Tables: column of the times. Default: told by the usual names.")
+    ] = None
+    lat_column: Annotated[ColumnName | None, Field(description="Tables: column of the latitudes.")] = None
+    lon_column: Annotated[ColumnName | None, Field(description="Tables: column of the longitudes.")] = None
+    device_column: Annotated[ColumnName | None, Field(description="Tables: column of the devices.")] = None
+    height_column: Annotated[ColumnName | None, Field(description="Tables: column of the heights.")] = None
+    accuracy_column: Annotated[ColumnName | None, Field(description="Tables: column of the accuracies.")] = (
+        None
+    )
+
+    def arguments(self) -> dict[str, Any]:
+        """Arguments that were given, as in a JSON body."""
+        given = self.model_dump(include=set(TrackArguments.model_fields))
+        return {name: value for name, value in given.items() if value is not None}
+
+    def columns(self) -> dict[str, str]:
+        """Columns of a table that were named, by what they are to the readers of files."""
+        named = {
+            "time": self.time_column,
+            "lat": self.lat_column,
+            "lon": self.lon_column,
+            "device": self.device_column,
+            "height_m": self.height_column,
+            "accuracy_m": self.accuracy_column,
+        }
+        return {role: name for role, name in named.items() if name is not None}
+
+    def not_json(self) -> list[str]:
+        """Parameters given that mean nothing beside a JSON body."""
+        return sorted(self.model_fields_set - set(TrackAnswerQuery.model_fields))

@@ -1,0 +1,1 @@
+"""From recorded fixes, in columns or in files, to cleaned tracks."""
