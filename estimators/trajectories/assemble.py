@@ -13,6 +13,7 @@ from estimators.trajectories.distance import steps_of, travelled
 from estimators.trajectories.estimation import Measured
 from estimators.trajectories.headings import directions
 from estimators.trajectories.labelling.modes import (
+    ADRIFT,
     BURST,
     COLOUR_TIME_S,
     ENTRY,
@@ -150,7 +151,7 @@ def _reasons(
     codes = np.zeros(rows.t.size, dtype=np.uint8)
     kind = solved.labels % LEVEL_STRIDE
     codes[kind == SPIKE] = FixReason.spike
-    codes[np.isin(kind, (ENTRY, BURST, REDRAW))] = FixReason.burst
+    codes[np.isin(kind, (ENTRY, BURST, REDRAW, ADRIFT))] = FixReason.burst
     off = residual**2 > _STALE_GATE * (variance + solved.variance)
     for first, stop in runs_of(rows.repeat):
         if off[first:stop].any():

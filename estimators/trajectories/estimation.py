@@ -14,21 +14,25 @@ import numpy as np
 
 from estimators.arrays import BoolArray, CodeArray, FloatArray
 from estimators.trajectories.labelling.beam import HOPELESS, WIDTH, label_track
-from estimators.trajectories.labelling.modes import BURST, ENTRY, LEVEL_STRIDE, REDRAW, SPIKE, WIDE
+from estimators.trajectories.labelling.evidence import judge_labels
+from estimators.trajectories.labelling.modes import ADRIFT, BURST, ENTRY, LEVEL_STRIDE, REDRAW, SPIKE, WIDE
 from estimators.trajectories.parameters import Rates, TrackParameters
 from estimators.trajectories.spans import PRIOR_LOG, PRIOR_SPREAD, start_from_spans
 
-WINDOW = 128
+WINDOW = 256
 WINDOWS = 4
 """A track of more fixes than both together is judged by so many windows of so many fixes."""
-_UNIT, _STRIDES = 0.23, (4, 2, 1)
+_UNIT, _STRIDES = 0.23, ((4, 2), (2, 1), (1,))
 """Of logarithms: factors of 2.5 at first, of 1.26 at last."""
 _MOST_RUNS = 80
 _REPORTED_LOG, _REPORTED_SPREAD = np.log(0.66), 0.4
 """White noise in units of a reported 68 % radius; 1/1.515 for two normal axes."""
 _LEAST_LOG, _LARGEST_LOG = np.log([1e-2, 1e-2, 1e-6]), np.log([1e4, 1e3, 1e4])
 _ROUNDS = 2
-_WIDTH, _HOPELESS = 6, 10.0
+_CALMER = 4.0
+"""Differences take manoeuvres for the usual motion: the search also begins with a density so much smaller, as a
+logarithm."""
+_WIDTH, _HOPELESS = 8, 10.0
 """Of the beam while parameters are sought."""
 
 
@@ -115,6 +119,20 @@ def label(
     return labels, probability, evidence
 
 
+def judge(measured: Measured, parameters: TrackParameters, labels: CodeArray) -> float:
+    """Log likelihood of given labels."""
+    return judge_labels(
+        measured.t,
+        measured.fixes,
+        measured.variance(parameters),
+        parameters.colour_m,
+        parameters.manoeuvre,
+        parameters.rates.as_array(),
+        np.ascontiguousarray(labels),
+        np.empty_like(labels),
+    )
+
+
 def estimate(measured: Measured, sigma_m: float | None = None, top_speed: float = np.inf) -> TrackParameters:
     """Find noise, motion and rates of a track.
 
@@ -138,21 +156,40 @@ def estimate(measured: Measured, sigma_m: float | None = None, top_speed: float 
         mean[0] = np.log(sigma_m / unit)
         axes = (2, 1)
 
-    def evidence(logs: FloatArray, rough: bool) -> float:
-        parameters = _parameters(logs, rates)
-        some = windows[:: 2 if rough else 1]
-        likelihood = sum(
-            label(window, parameters, width=_WIDTH, hopeless=_HOPELESS, top_speed=top_speed)[2]
-            for window in some
-        )
-        likelihood *= len(windows) / len(some)
-        return float(likelihood - 0.5 * np.sum(((logs - mean) / spread) ** 2))
+    def penalty(logs: FloatArray) -> float:
+        return float(0.5 * np.sum(((logs - mean) / spread) ** 2))
+
+    def relabelled(logs: FloatArray) -> tuple[list[CodeArray], float]:
+        told = [
+            label(window, _parameters(logs, rates), width=_WIDTH, hopeless=_HOPELESS, top_speed=top_speed)
+            for window in windows
+        ]
+        return [one[0] for one in told], sum(one[2] for one in told) - penalty(logs)
+
+    def under(labels: list[CodeArray]) -> Callable[[FloatArray], float]:
+        def evidence(logs: FloatArray) -> float:
+            parameters = _parameters(logs, rates)
+            judged = [judge(window, parameters, given) for window, given in zip(windows, labels, strict=True)]
+            return sum(judged) - penalty(logs)
+
+        return evidence
 
     start = start_from_spans(measured.t, measured.fixes)
     if measured.reported is not None or sigma_m is not None:
         start[0] = mean[0]
-    starts = [np.clip(start, _LEAST_LOG, _LARGEST_LOG), mean]
-    logs = _climb(evidence, max(starts, key=lambda logs: evidence(logs, True)), axes)
+    calm = start - np.array([0.0, 0.0, _CALMER])
+    reached = []
+    for one in (start, calm, mean):
+        there = np.clip(one, _LEAST_LOG, _LARGEST_LOG)
+        there = _climb(under(relabelled(there)[0]), there, axes, _STRIDES[0])
+        labels, worth = relabelled(there)
+        reached.append((worth, there, labels))
+    best, logs, labels = max(reached, key=lambda one: one[0])
+    for strides in _STRIDES[1:]:
+        there = _climb(under(labels), logs, axes, strides)
+        labels, worth = relabelled(there)
+        if worth > best:
+            best, logs = worth, there
     for _ in range(_ROUNDS):
         rates = _rates(windows, _parameters(logs, rates))
     return _parameters(logs, rates)
@@ -180,25 +217,21 @@ def _windows(measured: Measured) -> list[Measured]:
 
 
 def _climb(
-    evidence: Callable[[FloatArray, bool], float], start: FloatArray, axes: tuple[int, ...]
+    evidence: Callable[[FloatArray], float], start: FloatArray, axes: tuple[int, ...], strides: tuple[int, ...]
 ) -> FloatArray:
-    """Ascend coordinate by coordinate on a grid of logarithms, with steps that halve.
-
-    ``evidence`` takes logarithms and whether a rough answer will do, as it does for long steps.
-    """
-    seen: dict[tuple[bool, tuple[int, ...]], float] = {}
+    """Ascend coordinate by coordinate on a grid of logarithms, with steps that shrink."""
+    seen: dict[tuple[int, ...], float] = {}
 
     def logs_at(place: tuple[int, ...]) -> FloatArray:
         return np.clip(start + _UNIT * np.array(place), _LEAST_LOG, _LARGEST_LOG)
 
-    def value_at(place: tuple[int, ...], rough: bool) -> float:
-        if (rough, place) not in seen:
-            seen[rough, place] = evidence(logs_at(place), rough)
-        return seen[rough, place]
+    def value_at(place: tuple[int, ...]) -> float:
+        if place not in seen:
+            seen[place] = evidence(logs_at(place))
+        return seen[place]
 
     place: tuple[int, ...] = (0, 0, 0)
-    for stride in _STRIDES:
-        rough = stride > _STRIDES[-1]
+    for stride in strides:
         moved = True
         while moved and len(seen) < _MOST_RUNS:
             moved = False
@@ -206,7 +239,7 @@ def _climb(
                 for sign in (1, -1):
                     while True:
                         tried = (*place[:axis], place[axis] + sign * stride, *place[axis + 1 :])
-                        if not value_at(tried, rough) > value_at(place, rough):
+                        if not value_at(tried) > value_at(place):
                             break
                         place, moved = tried, True
     return logs_at(place)
@@ -222,9 +255,10 @@ def _rates(windows: list[Measured], parameters: TrackParameters) -> Rates:
         waited = np.diff(window.t, prepend=window.t[0])
         fixes += labels.size
         spikes += np.count_nonzero(kind == SPIKE)
-        entries += np.count_nonzero(kind == ENTRY)
-        good_s += float(waited[~np.isin(kind, (ENTRY, BURST, REDRAW))].sum())
+        entries += np.count_nonzero((kind == ENTRY) | ((kind == ADRIFT) & (labels != ADRIFT)))
+        good_s += float(waited[~np.isin(kind, (ENTRY, BURST, REDRAW, ADRIFT))].sum())
         levels = labels[kind <= WIDE] // LEVEL_STRIDE
+        levels = np.where(levels == 3, 0, levels)
         changes += np.count_nonzero(np.diff(levels.astype(np.int64)))
     default = Rates()
     return replace(

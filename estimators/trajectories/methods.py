@@ -9,8 +9,9 @@ from types import MappingProxyType
 import numpy as np
 
 from estimators.arrays import CodeArray, FloatArray
-from estimators.trajectories.estimation import Measured, estimate, from_spans, label
+from estimators.trajectories.estimation import Measured, estimate, from_spans, judge, label
 from estimators.trajectories.labelling.backward import turned_round
+from estimators.trajectories.labelling.reconcile import doubtful, reconcile
 from estimators.trajectories.labelling.modes import NOMINAL, SPIKE
 from estimators.trajectories.options import TrackOptions
 from estimators.trajectories.parameters import TrackParameters
@@ -19,8 +20,6 @@ _LAG = 32
 """Fixes after which the probability of a fix is settled."""
 _HOPELESS = 18.0
 """Less likely branches hardly ever come back, and cost time; from 15 on the answers are the same."""
-_CLEARLY = 3.0
-"""By how much the labels read backward have to be likelier."""
 _CUSTOMARY_SPEED_MPS = 50.0
 
 
@@ -68,13 +67,20 @@ def label_globally(measured: Measured, options: TrackOptions) -> Labelled:
     """Label by a beam over the whole track, its parameters by their evidence."""
     top = np.inf if options.max_speed_mps is None else options.max_speed_mps
     parameters = estimate(measured, options.sigma_m, top)
-    labels, probability, evidence = label(measured, parameters, _LAG, hopeless=_HOPELESS, top_speed=top)
+    labels, probability, _ = label(measured, parameters, _LAG, hopeless=_HOPELESS, top_speed=top)
     # A beam looks ahead by as much as it holds hypotheses; read backward it holds others.
-    turned, turned_probability, turned_evidence = label(
-        measured.backward(), parameters, _LAG, hopeless=_HOPELESS, top_speed=top
-    )
-    if turned_evidence > evidence + _CLEARLY:
-        labels, probability = turned_round(turned), turned_probability[::-1].copy()
+    for part in doubtful(labels):
+        some = measured.window(part.start, part.stop)
+        turned, turned_probability, _ = label(
+            some.backward(), parameters, _LAG, hopeless=_HOPELESS, top_speed=top
+        )
+        labels[part], probability[part] = reconcile(
+            labels[part],
+            turned_round(turned),
+            probability[part],
+            turned_probability[::-1],
+            lambda inner, given, some=some: judge(some.window(inner.start, inner.stop), parameters, given),
+        )
     return Labelled(labels, probability, parameters)
 
 

@@ -23,19 +23,30 @@ class Rates:
         By which the offset of a burst walks, m/sqrt(s).
     growth : float
         The same, of the offset's own size.
+    stray : float
+        Of the rate of bursts: that fixes go astray, on a path of their own, either way of beginning.
+    swerve, hurry, calm : float
+        Per second: that the velocity jumps, that the track begins to manoeuvre, that it ceases to.
+    settle : float
+        Per second: that a path that is astray goes on beside the track.
     """
 
     spike: float = 0.02
     wide: float = 0.003
     entry: float = 1e-3
     redraw: float = 1 / 40
-    teleport: float = 1e-5
+    teleport: float = 1e-8
     level: float = 1e-3
     walk: float = 1.0
     growth: float = 0.06
+    stray: float = 0.3
+    swerve: float = 1e-3
+    hurry: float = 1e-3
+    calm: float = 0.1
+    settle: float = 0.1
 
     def as_array(self) -> FloatArray:
-        """Give the rates in the order that :mod:`estimators.trajectories.labelling.beam` reads."""
+        """Give the rates in the order that :mod:`estimators.trajectories.labelling.priors` names."""
         return np.array(
             [
                 self.spike,
@@ -46,6 +57,11 @@ class Rates:
                 self.level,
                 self.walk,
                 self.growth,
+                self.stray,
+                self.swerve,
+                self.hurry,
+                self.calm,
+                self.settle,
             ]
         )
 

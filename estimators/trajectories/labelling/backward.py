@@ -10,6 +10,7 @@ import numpy as np
 
 from estimators.arrays import CodeArray
 from estimators.trajectories.labelling.modes import (
+    ADRIFT,
     BURST,
     ENTRY,
     EXIT,
@@ -40,11 +41,12 @@ def turned_round(backward: CodeArray) -> CodeArray:
     """
     labels = backward[::-1].copy()
     kind = labels % LEVEL_STRIDE
-    labels[(kind == EXIT) | (kind == TELEPORT)] -= kind[(kind == EXIT) | (kind == TELEPORT)] - NOMINAL
-    told = np.flatnonzero(kind != SPIKE)
+    labels[(kind == EXIT) | (kind == TELEPORT)] = NOMINAL
+    told = np.flatnonzero((kind != SPIKE) & (kind != ADRIFT))
     if told.size == 0:
         return labels
     held = kind[told]
+    levels = backward[::-1][told] // LEVEL_STRIDE
     bursting = np.isin(held, (ENTRY, BURST, REDRAW))
     # What happened between two fixes is written on the first of them backward, on the second forward.
     labels[told[bursting]] = BURST
@@ -56,5 +58,5 @@ def turned_round(backward: CodeArray) -> CodeArray:
     labels[told[begins]] = ENTRY
     labels[told[ends]] = EXIT
     moved = np.concatenate([[False], held[:-1] == TELEPORT]) & ~bursting & ~ends
-    labels[told[moved]] = TELEPORT
+    labels[told[moved]] = TELEPORT + LEVEL_STRIDE * np.concatenate([[0], levels[:-1]])[moved]
     return labels

@@ -20,42 +20,45 @@ from numba import types
 
 from estimators.arrays import CodeArray, FloatArray
 from estimators.kernels import device, kernel, ro
-from estimators.trajectories.labelling.branches import (
-    BRANCHES,
-    GOOD,
-    R_GROWTH,
-    R_SPIKE,
-    R_TELEPORT,
-    R_WALK,
-    R_WIDE,
-    branch_burst,
-    branch_nominal,
-    fill_prior,
-    take,
-)
+from estimators.trajectories.labelling.astray import are_twin_paths
+from estimators.trajectories.labelling.branches import BRANCHES
 from estimators.trajectories.labelling.modes import (
+    ADRIFT,
+    ASTRAY,
+    BURST,
     BURSTING,
-    COLOUR_TIME_S,
+    EXIT,
+    HURRIED,
     LEVEL_STRIDE,
     LONGEST_S,
-    REACH_M,
+    NOMINAL,
     REDRAW,
     SPIKE,
-    STILL_SPREAD_MPS,
-    bias_walk,
+    TELEPORT,
+    THROWN,
+    WIDE,
 )
-from estimators.trajectories.labelling.state import are_twins, predict, start_at
+from estimators.trajectories.labelling.priors import PRIORS, R_SPIKE, R_TELEPORT, R_WIDE, fill_prior
+from estimators.trajectories.labelling.state import are_twins, is_near
+from estimators.trajectories.labelling.steps import begin, branch, follow, look_ahead
 
-WIDTH = 12
+WIDTH = 40
+BORN = 0.6
+GOING_ON = (NOMINAL, NOMINAL + LEVEL_STRIDE * HURRIED, BURST, ADRIFT, EXIT)
 """Hypotheses that are followed."""
-_TOO_FAST = 30.0
-"""What a speed above the top costs, as a logarithm."""
+_FEWEST_OF_PLACE = 5
+_PLACES = 5
+"""A beam has room for hypotheses of so many places at least: those of one place differ in little, and together
+they would crowd out the one that turns out right."""
+GOOD = (NOMINAL, WIDE, EXIT, TELEPORT)
+"""Kinds of fixes that tell where the track is."""
 HOPELESS = 25.0
 """A branch exp(-25) times as likely as the best is not followed."""
-_UNKNOWN_M = 1e4
-"""Standard deviation of the position where the first fix is no good."""
-
-_SHORTEST_S = 1e-6
+_TOO_FAST = 30.0
+"""What a speed above the top costs, as a logarithm."""
+_ASTRAY_AT_FIRST = 0.02
+"""Probability that a track begins with a fault that lasts."""
+SHORTEST_S = 1e-6
 """Fixes of one time are reckoned so far apart, so that nothing is impossible between them."""
 
 
@@ -103,7 +106,7 @@ def label_track(
         Standard deviation of coloured noise in metres.
     manoeuvre : float
         Spectral density of the acceleration, m^2/s^3.
-    rates : ndarray, shape (8,)
+    rates : ndarray, shape (13,)
     lag : int
         Fixes after which the probability of a fix is settled; 0 leaves probabilities alone.
     width : int
@@ -123,11 +126,17 @@ def label_track(
         Log likelihood of the labelled track, given its first fix.
     """
     n = t.size
-    # Two hypotheses of the first fix, whatever the width.
-    room = max(width, 2)
-    x, P = np.zeros((room, 2, 3)), np.zeros((room, 3, 3))
-    new_x, new_P = np.zeros((room, 2, 3)), np.zeros((room, 3, 3))
-    ahead, spread = np.zeros((room, 2, 3)), np.zeros((room, 3, 3))
+    # Three hypotheses of the first fix, whatever the width.
+    room = max(width, 3)
+    crowd = max(_FEWEST_OF_PLACE, width // _PLACES)
+    x, P, path, spread = (
+        np.zeros((room, 2, 3)),
+        np.zeros((room, 3, 3)),
+        np.zeros((room, 2, 2)),
+        np.zeros((room, 3)),
+    )
+    x_ahead, P_ahead, path_ahead, spread_ahead = x.copy(), P.copy(), path.copy(), spread.copy()
+    new_x, new_P, new_path, new_spread = x.copy(), P.copy(), path.copy(), spread.copy()
     mode, new_mode = np.zeros(room, np.int64), np.zeros(room, np.int64)
     age, new_age = np.zeros(room), np.zeros(room)
     weight, new_weight = np.zeros(room), np.zeros(room)
@@ -136,93 +145,83 @@ def label_track(
     good, new_good = np.ones((room, max(lag, 1))), np.ones((room, max(lag, 1)))
     scores = np.empty(room * BRANCHES)
     kinds, origin = np.empty(room * BRANCHES, np.int64), np.empty(room * BRANCHES, np.int64)
-    prior, last_dt = np.empty(10), -1.0
-    squared_colour = colour * colour
+    prior, last_dt = np.empty(PRIORS), -1.0
 
-    for first in range(2):
-        start_at(x[first], P[first], fixes[0, 0], fixes[0, 1], variance[0], colour, STILL_SPREAD_MPS**2)
-    P[1, 0, 0] += _UNKNOWN_M**2
-    weight[0] = math.log1p(-rates[R_SPIKE] - rates[R_WIDE] - rates[R_TELEPORT])
-    weight[1] = math.log(rates[R_SPIKE])
-    kind_of[0, 1] = SPIKE
-    good[1, 0] = 0.0
-    used = 2
+    first = (NOMINAL, SPIKE, ADRIFT)
+    for h in range(3):
+        kind = first[h]
+        mode[h] = begin(kind, fixes[0, 0], fixes[0, 1], variance[0], colour, x[h], P[h], path[h], spread[h])
+        weight[h] = log_first(kind, rates)
+        kind_of[0, h] = kind if kind != ADRIFT else ADRIFT + LEVEL_STRIDE * THROWN
+        good[h, 0] = 1.0 if kind == NOMINAL else 0.0
+    used = 3
     total = 0.0
     for k in range(1, n):
-        dt = min(max(t[k] - t[k - 1], _SHORTEST_S), LONGEST_S)
+        dt = min(max(t[k] - t[k - 1], SHORTEST_S), LONGEST_S)
         east, north = fixes[k, 0], fixes[k, 1]
         if dt != last_dt:
-            fade, last_dt = math.exp(-dt / COLOUR_TIME_S), dt
+            last_dt = dt
             fill_prior(dt, rates, prior)
         count = 0
         for h in range(used):
-            bursting = mode[h] == BURSTING
-            if bursting:
-                bias = x[h, 0, 2] ** 2 + x[h, 1, 2] ** 2
-                walk = dt * bias_walk(bias, colour, rates[R_WALK], rates[R_GROWTH])
-                predict(x[h], P[h], dt, manoeuvre, 1.0, walk, ahead[h], spread[h])
-            else:
-                walk = squared_colour * (1.0 - fade * fade)
-                predict(x[h], P[h], dt, manoeuvre, fade, walk, ahead[h], spread[h])
-            place = max(spread[h, 0, 0], 0.0)
-            base = max(place + 2.0 * spread[h, 0, 2] + spread[h, 2, 2], 0.0)
-            squared, squared_place = 0.0, 0.0
-            for axis in range(2):
-                off = (east if axis == 0 else north) - ahead[h, axis, 0]
-                squared_place += off * off
-                off -= ahead[h, axis, 2]
-                squared += off * off
-            core = 9.0 * (variance[k] + squared_colour) + place
-            reach = math.log(math.pi * math.log1p(REACH_M * REACH_M / core))
+            look_ahead(
+                mode[h], dt, manoeuvre, colour, rates, x[h], P[h], path[h], spread[h], x_ahead[h],
+                P_ahead[h], path_ahead[h], spread_ahead[h],
+            )  # fmt: skip
             before = count
-            if bursting:
-                count = branch_burst(
-                    age[h], dt, weight[h], base, place + squared_colour, variance[k], squared,
-                    squared_place, core, reach, prior, scores, kinds, count,
-                )  # fmt: skip
-            else:
-                count = branch_nominal(
-                    mode[h], weight[h], base, variance[k], squared, squared_place, core, reach, prior,
-                    scores, kinds, count,
-                )  # fmt: skip
-            for branch in range(before, count):
-                origin[branch] = h
+            count = branch(
+                mode[h], age[h], weight[h], dt, east, north, variance[k], colour, prior, x_ahead[h],
+                P_ahead[h], path_ahead[h], spread_ahead[h], scores, kinds, count,
+            )  # fmt: skip
+            for at in range(before, count):
+                origin[at] = h
         best = -math.inf
-        for branch in range(count):
-            best = max(best, scores[branch])
+        for at in range(count):
+            best = max(best, scores[at])
         total += best
         alive = 0
-        for branch in range(count):
-            if scores[branch] >= best - hopeless:
-                scores[alive], kinds[alive], origin[alive] = scores[branch], kinds[branch], origin[branch]
+        for at in range(count):
+            if scores[at] >= best - (hopeless if kinds[at] in GOING_ON else BORN * hopeless):
+                scores[alive], kinds[alive], origin[alive] = scores[at], kinds[at], origin[at]
                 alive += 1
         kept = 0
         for _ in range(alive):
             if kept == width:
                 break
             chosen = 0
-            for branch in range(1, alive):
-                if scores[branch] > scores[chosen]:
-                    chosen = branch
+            for at in range(1, alive):
+                if scores[at] > scores[chosen]:
+                    chosen = at
             score = scores[chosen]
             scores[chosen] = -math.inf
             h = origin[chosen]
             kind, level = kinds[chosen] % LEVEL_STRIDE, kinds[chosen] // LEVEL_STRIDE
             for i in range(3):
-                new_x[kept, 0, i] = ahead[h, 0, i]
-                new_x[kept, 1, i] = ahead[h, 1, i]
+                new_x[kept, 0, i] = x_ahead[h, 0, i]
+                new_x[kept, 1, i] = x_ahead[h, 1, i]
                 for j in range(i, 3):
-                    new_P[kept, i, j] = spread[h, i, j]
-            now = take(kind, level, mode[h], east, north, variance[k], colour, new_x[kept], new_P[kept])
+                    new_P[kept, i, j] = P_ahead[h, i, j]
+            if mode[h] == ASTRAY:
+                new_path[kept] = path_ahead[h]
+                new_spread[kept] = spread_ahead[h]
+            now = follow(
+                kind, level, mode[h], dt, east, north, variance[k], colour, new_x[kept], new_P[kept],
+                new_path[kept], new_spread[kept],
+            )  # fmt: skip
             if top_speed < math.inf and _is_too_fast(new_x[kept], new_P[kept], top_speed):
                 score -= _TOO_FAST
             mass = math.exp(score - best)
             is_good = 1.0 if kind in GOOD else 0.0
-            twin = -1
+            twin, neighbours = -1, 0
             for other in range(kept):
                 if new_mode[other] == now and are_twins(new_x[kept], new_P[kept], new_x[other], new_P[other]):
-                    twin = other
-                    break
+                    if now != ASTRAY or are_twin_paths(
+                        new_path[kept], new_spread[kept], new_path[other], new_spread[other]
+                    ):
+                        twin = other
+                        break
+                if is_near(new_x[kept], new_P[kept], new_x[other], new_P[other]):
+                    neighbours += 1
             if twin >= 0:
                 if lag > 0:
                     share = mass / (mass + new_weight[twin])
@@ -231,10 +230,12 @@ def label_track(
                         new_good[twin, row] += share * (seen - new_good[twin, row])
                 new_weight[twin] += mass
                 continue
+            if neighbours >= crowd:
+                continue
             for row in range(lag):
                 new_good[kept, row] = is_good if row == k % lag else good[h, row]
             new_mode[kept] = now
-            lasting = now == BURSTING and mode[h] == BURSTING and kind != REDRAW
+            lasting = now >= BURSTING and mode[h] == now and kind != REDRAW
             new_age[kept] = age[h] + dt if lasting else 0.0
             new_weight[kept] = mass
             parent[k, kept] = h
@@ -243,6 +244,8 @@ def label_track(
         used = kept
         x, new_x = new_x, x
         P, new_P = new_P, P
+        path, new_path = new_path, path
+        spread, new_spread = new_spread, spread
         mode, new_mode = new_mode, mode
         age, new_age = new_age, age
         for h in range(used):
@@ -264,6 +267,16 @@ def label_track(
         labels[k] = kind_of[k, h]
         h = parent[k, h]
     return float(total)
+
+
+@device
+def log_first(kind: int, rates: FloatArray) -> float:
+    """Ln prior of what the first fix is."""
+    if kind == ADRIFT:
+        return math.log(_ASTRAY_AT_FIRST)
+    if kind == SPIKE:
+        return math.log(rates[R_SPIKE])
+    return math.log1p(-rates[R_SPIKE] - rates[R_WIDE] - rates[R_TELEPORT])
 
 
 @device

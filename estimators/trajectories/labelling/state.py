@@ -5,10 +5,12 @@ from __future__ import annotations
 from estimators.arrays import FloatArray
 from estimators.kernels import device
 
-_TWIN = 0.2
+TWIN = 0.2
 """States closer than this, in variances, have the same future."""
-_TWIN_SPREAD = 0.5
-_LEAST_VARIANCE = 1e-6
+TWIN_SPREAD = 0.5
+_NEAR = 2.0
+"""In variances of their difference, states closer than this are of the same place."""
+LEAST_VARIANCE = 1e-6
 
 
 @device
@@ -56,6 +58,14 @@ def update(x: FloatArray, P: FloatArray, east: float, north: float, variance: fl
 
 
 @device
+def swerve(P: FloatArray, dt: float, variance: float) -> None:
+    """Let the velocity have jumped a step ago, by a variance."""
+    P[0, 0] += dt * dt * variance
+    P[0, 1] += dt * variance
+    P[1, 1] += variance
+
+
+@device
 def forget_bias(x: FloatArray, P: FloatArray, variance: float) -> None:
     """Give the state a fresh bias of mean 0."""
     for axis in range(2):
@@ -95,11 +105,18 @@ def start_at(
 
 
 @device
+def is_near(x: FloatArray, P: FloatArray, other: FloatArray, other_P: FloatArray) -> bool:
+    """Whether two states are of the same place, as far as they know."""
+    apart = (x[0, 0] - other[0, 0]) ** 2 + (x[1, 0] - other[1, 0]) ** 2
+    return bool(apart < _NEAR * (P[0, 0] + other_P[0, 0]))
+
+
+@device
 def are_twins(x: FloatArray, P: FloatArray, other: FloatArray, other_P: FloatArray) -> bool:
     """Whether two states are so alike that only the likelier of them need be followed."""
     for k in range(3):
-        limit = _TWIN * min(P[k, k], other_P[k, k]) + _LEAST_VARIANCE
+        limit = TWIN * min(P[k, k], other_P[k, k]) + LEAST_VARIANCE
         apart = (x[0, k] - other[0, k]) ** 2 + (x[1, k] - other[1, k]) ** 2
-        if apart >= limit or abs(P[k, k] - other_P[k, k]) >= _TWIN_SPREAD * other_P[k, k]:
+        if apart >= limit or abs(P[k, k] - other_P[k, k]) >= TWIN_SPREAD * other_P[k, k]:
             return False
     return True

@@ -14,11 +14,13 @@ from numba import types
 from estimators.arrays import CodeArray, FloatArray
 from estimators.kernels import device, kernel, ro
 from estimators.statespace.chain import invert
-from estimators.trajectories.labelling.branches import R_GROWTH, R_WALK
+from estimators.trajectories.labelling.astray import UNLIKE
 from estimators.trajectories.labelling.modes import (
+    ADRIFT,
     COLOUR_TIME_S,
     ENTRY,
     EXIT,
+    HURRIED,
     JUMP_SPREAD_MPS,
     LEVEL_FACTOR,
     LEVEL_STRIDE,
@@ -27,12 +29,15 @@ from estimators.trajectories.labelling.modes import (
     REDRAW,
     SPIKE,
     STILL_SPREAD_MPS,
+    SWERVED,
     TELEPORT,
     WIDE,
     WIDE_FACTOR,
     bias_walk,
+    hurry,
 )
-from estimators.trajectories.labelling.state import start_at, update
+from estimators.trajectories.labelling.priors import R_GROWTH, R_WALK
+from estimators.trajectories.labelling.state import start_at, swerve, update
 
 _FRESH = 1e10
 """Variance of what is not known at all, m^2."""
@@ -77,7 +82,7 @@ def smooth_track(
     """
     n = t.size
     first = 0
-    while first < n - 1 and labels[first] % LEVEL_STRIDE in (SPIKE, MISSING):
+    while first < n - 1 and labels[first] % LEVEL_STRIDE in (SPIKE, MISSING, ADRIFT):
         first += 1
     x, P = np.zeros((2, 3)), np.zeros((3, 3))
     start_at(x, P, fixes[first, 0], fixes[first, 1], _FRESH, colour, STILL_SPREAD_MPS**2)
@@ -86,12 +91,13 @@ def smooth_track(
     keep = np.zeros(n)
     squared = colour * colour
     bursting = False
+    hurried = False
     for k in range(n):
         kind, level = labels[k] % LEVEL_STRIDE, labels[k] // LEVEL_STRIDE
         dt = min(t[k] - t[k - 1], LONGEST_S) if k > 0 else 0.0
         if kind in (ENTRY, REDRAW):
             fade, walk, bursting = 0.0, _FRESH, True
-        elif kind in (EXIT, TELEPORT):
+        elif kind == EXIT or (kind == TELEPORT and level != SWERVED):
             fade, walk, bursting = 0.0, squared, False
         elif bursting:
             bias = x[0, 2] * x[0, 2] + x[1, 2] * x[1, 2]
@@ -100,21 +106,30 @@ def smooth_track(
             fade = math.exp(-dt / COLOUR_TIME_S)
             walk = squared * (1.0 - fade * fade)
         keep[k] = fade
+        q = hurry(manoeuvre) if hurried else manoeuvre
+        if kind not in (MISSING,):
+            hurried = level == HURRIED or (kind == TELEPORT and level == SWERVED)
         for axis in range(2):
             x[axis, 0] += dt * x[axis, 1]
             x[axis, 2] *= fade
-        P[0, 0] += 2.0 * dt * P[0, 1] + dt * dt * P[1, 1] + manoeuvre * dt * dt * dt / 3.0
-        P[0, 1] += dt * P[1, 1] + manoeuvre * dt * dt / 2.0
+        P[0, 0] += 2.0 * dt * P[0, 1] + dt * dt * P[1, 1] + q * dt * dt * dt / 3.0
+        P[0, 1] += dt * P[1, 1] + q * dt * dt / 2.0
         P[0, 2] = fade * (P[0, 2] + dt * P[1, 2])
-        P[1, 1] += manoeuvre * dt
+        P[1, 1] += q * dt
         P[1, 2] *= fade
         P[2, 2] = fade * fade * P[2, 2] + walk
-        if kind == TELEPORT:
+        if kind == TELEPORT and level == SWERVED:
+            swerve(P, dt, UNLIKE)
+        elif kind == TELEPORT:
             P[0, 0] += _FRESH
             P[1, 1] += JUMP_SPREAD_MPS**2
         _copy(x, P, ahead[k], ahead_P[k])
-        if kind not in (SPIKE, MISSING):
-            noise = variance[k] * LEVEL_FACTOR**level * (WIDE_FACTOR if kind == WIDE else 1.0)
+        if kind not in (SPIKE, MISSING, ADRIFT):
+            noise = (
+                variance[k]
+                * (1.0 if kind == TELEPORT or level == HURRIED else LEVEL_FACTOR**level)
+                * (WIDE_FACTOR if kind == WIDE else 1.0)
+            )
             update(x, P, fixes[k, 0], fixes[k, 1], noise)
         _copy(x, P, filtered[k], filtered_P[k])
     _copy(filtered[n - 1], filtered_P[n - 1], states[n - 1], covariances[n - 1])
