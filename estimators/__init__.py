@@ -19,7 +19,9 @@ from estimators.notices import Notice, NoticeCode
 from estimators.options import RobustOptions
 from estimators.result import Estimate, NoFit, NoFitReason
 from estimators.trajectories.clean import clean_trajectory
-from estimators.trajectories.methods import TRACK_METHODS, TrackMethod
+from estimators.trajectories.live.answer import LiveRows, LiveTrack
+from estimators.trajectories.live.clean_live import clean_live
+from estimators.trajectories.methods.registry import TRACK_METHODS, TrackMethod
 from estimators.trajectories.options import TrackOptions
 from estimators.trajectories.track import Track
 from estimators.trends.fit import fit_trend
@@ -42,6 +44,8 @@ __all__ = [
     "Fix",
     "Fixes",
     "InputError",
+    "LiveRows",
+    "LiveTrack",
     "NoFit",
     "NoFitReason",
     "Notice",
@@ -59,6 +63,7 @@ __all__ = [
     "TrendModel",
     "TrendTable",
     "__version__",
+    "clean_live",
     "clean_trajectory",
     "correct_ranges",
     "fit_trend",

@@ -21,7 +21,7 @@ from estimators.trajectories.labelling.modes import (
     REDRAW,
     SPIKE,
 )
-from estimators.trajectories.methods import Labelled
+from estimators.trajectories.methods.labelled import Labelled
 from estimators.trajectories.motion import is_moving, stretches
 from estimators.trajectories.options import TrackOptions
 from estimators.trajectories.reasons import FixReason

@@ -9,14 +9,11 @@ import numpy as np
 from estimators.arrays import ArrayLike, FloatArray, InputError, Reason
 from estimators.result import NoFit, NoFitReason, Points
 from estimators.trajectories.assemble import assemble
-from estimators.trajectories.estimation import Measured
-from estimators.trajectories.labelling.modes import MISSING
-from estimators.trajectories.methods import TRACK_METHODS, Labelled
+from estimators.trajectories.methods.registry import TRACK_METHODS
 from estimators.trajectories.options import TrackOptions
 from estimators.trajectories.reasons import FixReason
 from estimators.trajectories.rows import Rows, read_rows
-from estimators.trajectories.smoothing.rts import smooth_track
-from estimators.trajectories.smoothing.solved import Solved
+from estimators.trajectories.solve import measured_of, smooth_rows
 from estimators.trajectories.track import Track
 
 
@@ -27,6 +24,8 @@ def clean_trajectory(
     *,
     height_m: ArrayLike | None = None,
     accuracy_m: ArrayLike | None = None,
+    speed_mps: ArrayLike | None = None,
+    bearing_deg: ArrayLike | None = None,
     method: str = "auto",
     level: float = 0.95,
     options: TrackOptions | None = None,
@@ -47,6 +46,10 @@ def clean_trajectory(
         Metres; may have gaps.
     accuracy_m : array_like, shape (n,), optional
         Radius about each fix that holds 68 % as the receiver reports it; only its proportions count.
+    speed_mps, bearing_deg : array_like, shape (n,), optional
+        Speed over ground and course, degrees clockwise from north, as the receiver reports them; may have
+        gaps. How far they are trusted is found from the track: speeds that disagree with it, or that were
+        computed from its positions, are not used.
     method : str
         ``auto`` (default) or another of :func:`estimators.track_methods`.
     level : float
@@ -84,40 +87,14 @@ def clean_trajectory(
     if isinstance(level, bool) or not 0.0 < level < 1.0:
         raise InputError("level", "must lie between 0 and 1, both excluded")
     options = options or TrackOptions()
-    rows = read_rows(t_s, lat_deg, lon_deg, height_m, accuracy_m)
+    rows = read_rows(t_s, lat_deg, lon_deg, height_m, accuracy_m, speed_mps, bearing_deg)
     refused = _refuse(rows)
     if refused is not None:
         return refused
-    kept = rows.measures
-    measured = Measured(
-        np.ascontiguousarray(rows.t[kept]),
-        np.ascontiguousarray(rows.fixes[kept]),
-        None if rows.reported is None else np.ascontiguousarray(rows.reported[kept]),
-    )
+    measured = measured_of(rows)
     labelled = TRACK_METHODS[method].labeller(measured, options)
-    solved = _smooth(rows, labelled)
+    solved = smooth_rows(rows, labelled)
     return assemble(rows, measured, labelled, solved, method, options, level)
-
-
-def _smooth(rows: Rows, labelled: Labelled) -> Solved:
-    """Smooth at every time, through rows that measure nothing too."""
-    m, parameters = rows.t.size, labelled.parameters
-    labels = np.full(m, MISSING, dtype=np.uint8)
-    labels[rows.measures] = labelled.labels
-    variance = Measured(rows.t, rows.fixes, rows.reported).variance(parameters)
-    states, covariances = np.zeros((m, 2, 3)), np.zeros((m, 3, 3))
-    smooth_track(
-        rows.t,
-        rows.fixes,
-        variance,
-        parameters.colour_m,
-        parameters.manoeuvre,
-        parameters.rates.as_array(),
-        labels,
-        states,
-        covariances,
-    )
-    return Solved(labels, variance, states, covariances)
 
 
 def _refuse(rows: Rows) -> NoFit | None:

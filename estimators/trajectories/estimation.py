@@ -48,11 +48,23 @@ class Measured:
         East and north, metres.
     reported : ndarray, shape (n,), or None
         Radii that hold 68 % as the receiver reports them, metres.
+    velocity : ndarray, shape (n, 2), or None
+        East and north as the receiver reports them, m/s.
+    velocity_variance : ndarray, shape (n,), or None
+        Per axis; infinite where there is no velocity to be trusted.
     """
 
     t: FloatArray
     fixes: FloatArray
     reported: FloatArray | None
+    velocity: FloatArray | None = None
+    velocity_variance: FloatArray | None = None
+
+    def velocities(self) -> tuple[FloatArray, FloatArray]:
+        """Velocities and their variances; infinite ones where there are none."""
+        if self.velocity is None or self.velocity_variance is None:
+            return np.zeros((self.t.size, 2)), np.full(self.t.size, np.inf)
+        return self.velocity, self.velocity_variance
 
     def variance(self, parameters: TrackParameters) -> FloatArray:
         """Variance of white noise per axis and fix."""
@@ -61,23 +73,28 @@ class Measured:
 
     def window(self, first: int, last: int) -> Measured:
         """Give some fixes on end."""
-        part = slice(first, last)
-        return Measured(
-            self.t[part], self.fixes[part], None if self.reported is None else self.reported[part]
-        )
+        return self._part(slice(first, last))
 
     def backward(self) -> Measured:
         """Give the track as it is read backward."""
-        return Measured(
-            np.ascontiguousarray(-self.t[::-1]),
-            np.ascontiguousarray(self.fixes[::-1]),
-            None if self.reported is None else np.ascontiguousarray(self.reported[::-1]),
-        )
+        turned = self._part(slice(None, None, -1))
+        velocity = None if turned.velocity is None else -turned.velocity
+        return replace(turned, t=-turned.t, velocity=velocity)
 
     def where(self, chosen: BoolArray) -> Measured:
         """Give the chosen fixes."""
+        return self._part(chosen)
+
+    def _part(self, rows: BoolArray | slice) -> Measured:
+        def part(column: FloatArray | None) -> FloatArray | None:
+            return None if column is None else np.ascontiguousarray(column[rows])
+
         return Measured(
-            self.t[chosen], self.fixes[chosen], None if self.reported is None else self.reported[chosen]
+            np.ascontiguousarray(self.t[rows]),
+            np.ascontiguousarray(self.fixes[rows]),
+            part(self.reported),
+            part(self.velocity),
+            part(self.velocity_variance),
         )
 
 
@@ -106,6 +123,7 @@ def label(
         measured.t,
         measured.fixes,
         measured.variance(parameters),
+        *measured.velocities(),
         parameters.colour_m,
         parameters.manoeuvre,
         parameters.rates.as_array(),
@@ -125,6 +143,7 @@ def judge(measured: Measured, parameters: TrackParameters, labels: CodeArray) ->
         measured.t,
         measured.fixes,
         measured.variance(parameters),
+        *measured.velocities(),
         parameters.colour_m,
         parameters.manoeuvre,
         parameters.rates.as_array(),
@@ -145,7 +164,8 @@ def estimate(measured: Measured, sigma_m: float | None = None, top_speed: float 
     top_speed : float
         m/s.
     """
-    windows = _windows(measured)
+    # Positions alone: velocities make a finer prediction, against which noise that lasts looks like motion.
+    windows = _windows(replace(measured, velocity=None, velocity_variance=None))
     rates = Rates()
     mean, spread = PRIOR_LOG.copy(), PRIOR_SPREAD.copy()
     if measured.reported is not None:

@@ -19,13 +19,15 @@ from estimators.time_axis import TimeAxis, as_moments, as_times
 from estimators.trajectories.clock import clock_shifts
 from estimators.trajectories.reasons import FixReason
 from estimators.trajectories.stale import repeats
+from estimators.trajectories.velocities import velocities
 
-_LONGEST_S = 1e10
+LONGEST_S = 1e10
 """Tracks span at most three hundred years; longer ones are in another unit."""
 _NULL_ISLAND_DEG = 1e-7
 _ELSEWHERE_M = 1e3
 _ACCURACY_M = (0.1, 1e4)
-_HEIGHT_M = 1e7
+HEIGHT_M = 1e7
+_FASTEST_MPS = 1e4
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +61,8 @@ class Rows:
         Radii that hold 68 %.
     height : ndarray, shape (m,), or None
         NaN where there is none.
+    velocity : ndarray, shape (m, 2), or None
+        As reported, along the plane's axes, m/s; NaN where there is none.
     plane : Plane
     was_sorted : bool
     """
@@ -77,6 +81,7 @@ class Rows:
     shift: FloatArray
     reported: FloatArray | None
     height: FloatArray | None
+    velocity: FloatArray | None
     plane: Plane
     was_sorted: bool
 
@@ -87,17 +92,19 @@ def read_rows(
     lon_deg: ArrayLike,
     height_m: ArrayLike | None = None,
     accuracy_m: ArrayLike | None = None,
+    speed_mps: ArrayLike | None = None,
+    bearing_deg: ArrayLike | None = None,
 ) -> Rows:
     """Check a track and bring it into a plane; see :func:`estimators.clean_trajectory` for what it takes."""
-    internal, axis, column = _times(t_s)
+    internal, axis, column = times_of(t_s)
     n = internal.size
-    latitude = _column(lat_deg, "lat_deg", n)
-    longitude = _column(lon_deg, "lon_deg", n)
-    usable = _on_earth(latitude, longitude)
+    latitude = column_of(lat_deg, "lat_deg", n)
+    longitude = column_of(lon_deg, "lon_deg", n)
+    usable = on_earth(latitude, longitude)
     longitude = np.where(np.abs(longitude) > 180.0, (longitude + 180.0) % 360.0 - 180.0, longitude)
     timed = np.isfinite(internal)
     with np.errstate(invalid="ignore"):
-        if timed.any() and np.ptp(internal[timed]) > _LONGEST_S:
+        if timed.any() and np.ptp(internal[timed]) > LONGEST_S:
             raise InputError("t_s", "the times span more than 300 years; give seconds, or points in time")
     plane = Plane(0.0, 0.0)
     if usable.any():
@@ -137,12 +144,14 @@ def read_rows(
         shift=shifts[sorting],
         reported=_reported(accuracy_m, n, order),
         height=_heights(height_m, n, order),
+        velocity=_velocities(speed_mps, bearing_deg, plane, latitude, longitude, order),
         plane=plane,
         was_sorted=bool(np.all(np.diff(order) > 0)),
     )
 
 
-def _times(t_s: ArrayLike) -> tuple[FloatArray, TimeAxis, npt.NDArray[Any]]:
+def times_of(t_s: ArrayLike) -> tuple[FloatArray, TimeAxis, npt.NDArray[Any]]:
+    """Give times since the first, their axis, and the caller's times as numbers or datetime64[ns]."""
     array = np.asarray(t_s)
     try:
         if array.dtype.kind == "U" or (array.dtype.kind == "O" and _holds_text(array)):
@@ -156,14 +165,16 @@ def _holds_text(array: npt.NDArray[Any]) -> bool:
     return any(isinstance(value, str) for value in array.ravel())
 
 
-def _column(values: ArrayLike, field: str, n: int) -> FloatArray:
+def column_of(values: ArrayLike, field: str, n: int) -> FloatArray:
+    """One number per time; anything else is the caller's mistake."""
     column = as_vector(values, field)
     if column.size != n:
         raise InputError(field, f"{column.size} values for {n} times; give one value per time")
     return column
 
 
-def _on_earth(latitude: FloatArray, longitude: FloatArray) -> BoolArray:
+def on_earth(latitude: FloatArray, longitude: FloatArray) -> BoolArray:
+    """Whether degrees name a place."""
     return (np.abs(latitude) <= 90.0) & (np.abs(longitude) <= 360.0)
 
 
@@ -204,7 +215,7 @@ def _twins(t: FloatArray, latitude: FloatArray, longitude: FloatArray, held: Boo
 def _reported(accuracy_m: ArrayLike | None, n: int, order: IntArray) -> FloatArray | None:
     if accuracy_m is None:
         return None
-    radii = _column(accuracy_m, "accuracy_m", n)[order]
+    radii = column_of(accuracy_m, "accuracy_m", n)[order]
     known = np.isfinite(radii) & (radii > 0.0)
     if not known.any():
         return None
@@ -214,7 +225,34 @@ def _reported(accuracy_m: ArrayLike | None, n: int, order: IntArray) -> FloatArr
 def _heights(height_m: ArrayLike | None, n: int, order: IntArray) -> FloatArray | None:
     if height_m is None:
         return None
-    heights = _column(height_m, "height_m", n)[order]
+    heights = column_of(height_m, "height_m", n)[order]
     with np.errstate(invalid="ignore"):
-        heights = np.where(np.abs(heights) <= _HEIGHT_M, heights, np.nan)
+        heights = np.where(np.abs(heights) <= HEIGHT_M, heights, np.nan)
     return heights if np.isfinite(heights).any() else None
+
+
+def _velocities(
+    speed_mps: ArrayLike | None,
+    bearing_deg: ArrayLike | None,
+    plane: Plane,
+    latitude: FloatArray,
+    longitude: FloatArray,
+    order: IntArray,
+) -> FloatArray | None:
+    """Give reported velocities in order of time; what no receiver means is left out."""
+    n = latitude.size
+    speed = None if speed_mps is None else column_of(speed_mps, "speed_mps", n)[order]
+    bearing = None if bearing_deg is None else column_of(bearing_deg, "bearing_deg", n)[order]
+    if speed is None:
+        return None
+    if bearing is None:
+        bearing = np.full(order.size, np.nan)
+    with np.errstate(invalid="ignore"):
+        usable = on_earth(latitude[order], longitude[order]) & (speed >= 0.0) & (speed <= _FASTEST_MPS)
+    # What is repeated to the last digit was not measured again: the receiver's speed has frozen.
+    usable[1:] &= ~((speed[1:] == speed[:-1]) & ((bearing[1:] == bearing[:-1]) | np.isnan(bearing[1:])))
+    velocity = np.full((order.size, 2), np.nan)
+    bearing = np.where(np.isfinite(bearing), bearing, np.nan) % 360.0
+    places = latitude[order][usable], longitude[order][usable]
+    velocity[usable] = velocities(plane, *places, speed[usable], bearing[usable])
+    return velocity if np.isfinite(velocity).any() else None

@@ -41,6 +41,7 @@ from estimators.trajectories.labelling.modes import (
 from estimators.trajectories.labelling.priors import PRIORS, R_SPIKE, R_TELEPORT, R_WIDE, fill_prior
 from estimators.trajectories.labelling.state import are_twins, is_near
 from estimators.trajectories.labelling.steps import begin, branch, follow, look_ahead
+from estimators.trajectories.labelling.velocity import take_velocity
 
 WIDTH = 40
 BORN = 0.6
@@ -67,6 +68,8 @@ SHORTEST_S = 1e-6
         ro(types.float64),
         ro(types.float64, 2),
         ro(types.float64),
+        ro(types.float64, 2),
+        ro(types.float64),
         types.float64,
         types.float64,
         ro(types.float64),
@@ -82,6 +85,8 @@ def label_track(
     t: FloatArray,
     fixes: FloatArray,
     variance: FloatArray,
+    velocity: FloatArray,
+    velocity_variance: FloatArray,
     colour: float,
     manoeuvre: float,
     rates: FloatArray,
@@ -102,6 +107,10 @@ def label_track(
         East and north in metres.
     variance : ndarray, shape (n,)
         Of white noise, per axis.
+    velocity : ndarray, shape (n, 2)
+        Reported, east and north, m/s.
+    velocity_variance : ndarray, shape (n,)
+        Per axis; infinite where there is none.
     colour : float
         Standard deviation of coloured noise in metres.
     manoeuvre : float
@@ -151,6 +160,8 @@ def label_track(
     for h in range(3):
         kind = first[h]
         mode[h] = begin(kind, fixes[0, 0], fixes[0, 1], variance[0], colour, x[h], P[h], path[h], spread[h])
+        if velocity_variance[0] < math.inf:
+            take_velocity(x[h], P[h], velocity[0, 0], velocity[0, 1], velocity_variance[0])
         weight[h] = log_first(kind, rates)
         kind_of[0, h] = kind if kind != ADRIFT else ADRIFT + LEVEL_STRIDE * THROWN
         good[h, 0] = 1.0 if kind == NOMINAL else 0.0
@@ -168,6 +179,8 @@ def label_track(
                 mode[h], dt, manoeuvre, colour, rates, x[h], P[h], path[h], spread[h], x_ahead[h],
                 P_ahead[h], path_ahead[h], spread_ahead[h],
             )  # fmt: skip
+            if velocity_variance[k] < math.inf:
+                take_velocity(x_ahead[h], P_ahead[h], velocity[k, 0], velocity[k, 1], velocity_variance[k])
             before = count
             count = branch(
                 mode[h], age[h], weight[h], dt, east, north, variance[k], colour, prior, x_ahead[h],

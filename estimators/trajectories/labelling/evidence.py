@@ -32,6 +32,7 @@ from estimators.trajectories.labelling.modes import (
 )
 from estimators.trajectories.labelling.priors import PRIORS, fill_prior
 from estimators.trajectories.labelling.steps import begin, branch, follow, look_ahead
+from estimators.trajectories.labelling.velocity import take_velocity
 
 IMPOSSIBLE = -1e6
 """Worth of a step that the model does not have."""
@@ -39,6 +40,8 @@ IMPOSSIBLE = -1e6
 
 @kernel(
     types.float64(
+        ro(types.float64),
+        ro(types.float64, 2),
         ro(types.float64),
         ro(types.float64, 2),
         ro(types.float64),
@@ -53,6 +56,8 @@ def judge_labels(
     t: FloatArray,
     fixes: FloatArray,
     variance: FloatArray,
+    velocity: FloatArray,
+    velocity_variance: FloatArray,
     colour: float,
     manoeuvre: float,
     rates: FloatArray,
@@ -63,7 +68,7 @@ def judge_labels(
 
     Parameters
     ----------
-    t, fixes, variance, colour, manoeuvre, rates
+    t, fixes, variance, velocity, velocity_variance, colour, manoeuvre, rates
         As for :func:`estimators.trajectories.labelling.beam.label_track`.
     labels : ndarray of uint8, shape (n,)
     resolved : ndarray of uint8, shape (n,)
@@ -81,6 +86,8 @@ def judge_labels(
     if first not in (SPIKE, ADRIFT):
         first = NOMINAL
     mode = begin(first, fixes[0, 0], fixes[0, 1], variance[0], colour, x, P, path, spread)
+    if velocity_variance[0] < math.inf:
+        take_velocity(x, P, velocity[0, 0], velocity[0, 1], velocity_variance[0])
     resolved[0] = first if first != ADRIFT else ADRIFT + LEVEL_STRIDE * THROWN
     total, age, last_dt = log_first(first, rates), 0.0, -1.0
     for k in range(1, t.size):
@@ -91,6 +98,8 @@ def judge_labels(
         look_ahead(
             mode, dt, manoeuvre, colour, rates, x, P, path, spread, x_ahead, P_ahead, path_ahead, spread_ahead
         )
+        if velocity_variance[k] < math.inf:
+            take_velocity(x_ahead, P_ahead, velocity[k, 0], velocity[k, 1], velocity_variance[k])
         count = branch(
             mode, age, 0.0, dt, fixes[k, 0], fixes[k, 1], variance[k], colour, prior, x_ahead, P_ahead,
             path_ahead, spread_ahead, scores, kinds, 0,

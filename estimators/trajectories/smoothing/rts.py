@@ -38,6 +38,7 @@ from estimators.trajectories.labelling.modes import (
 )
 from estimators.trajectories.labelling.priors import R_GROWTH, R_WALK
 from estimators.trajectories.labelling.state import start_at, swerve, update
+from estimators.trajectories.labelling.velocity import take_velocity
 
 _FRESH = 1e10
 """Variance of what is not known at all, m^2."""
@@ -45,6 +46,8 @@ _FRESH = 1e10
 
 @kernel(
     types.void(
+        ro(types.float64),
+        ro(types.float64, 2),
         ro(types.float64),
         ro(types.float64, 2),
         ro(types.float64),
@@ -60,6 +63,8 @@ def smooth_track(
     t: FloatArray,
     fixes: FloatArray,
     variance: FloatArray,
+    velocity: FloatArray,
+    velocity_variance: FloatArray,
     colour: float,
     manoeuvre: float,
     rates: FloatArray,
@@ -71,7 +76,7 @@ def smooth_track(
 
     Parameters
     ----------
-    t, fixes, variance, colour, manoeuvre, rates
+    t, fixes, variance, velocity, velocity_variance, colour, manoeuvre, rates
         As for :func:`estimators.trajectories.labelling.beam.label_track`.
     labels : ndarray of uint8, shape (n,)
         ``MISSING`` where nothing was measured.
@@ -124,6 +129,8 @@ def smooth_track(
             P[0, 0] += _FRESH
             P[1, 1] += JUMP_SPREAD_MPS**2
         _copy(x, P, ahead[k], ahead_P[k])
+        if velocity_variance[k] < math.inf:
+            take_velocity(x, P, velocity[k, 0], velocity[k, 1], velocity_variance[k])
         if kind not in (SPIKE, MISSING, ADRIFT):
             noise = (
                 variance[k]

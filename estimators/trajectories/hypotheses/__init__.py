@@ -1,0 +1,1 @@
+"""Hypotheses of the motion in short windows, found by the one engine of consensus."""
