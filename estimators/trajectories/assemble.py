@@ -198,7 +198,8 @@ def _notices(
         found.append(notice(NoticeCode.few_fixes, fixes=m))
     if bad > _MOSTLY * codes.size:
         found.append(notice(NoticeCode.mostly_faulty, share=round(bad / codes.size, 3)))
-    if m >= _FEW and parameters.colour_m > _COLOURED * sigma:
+    # Where most fixes count as faulty, errors that last pass for the motion.
+    if m >= _FEW and (parameters.colour_m > _COLOURED * sigma or bad > _MOSTLY * codes.size):
         found.append(notice(NoticeCode.drift_unobservable, coloured_m=parameters.colour_m))
     if m >= _FEW:
         step = float(np.median(np.diff(measured.t)))

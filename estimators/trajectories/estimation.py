@@ -13,25 +13,40 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from estimators.arrays import BoolArray, CodeArray, FloatArray
+from estimators.trajectories.climbing import climb, mean_square
 from estimators.trajectories.labelling.beam import HOPELESS, WIDTH, label_track
 from estimators.trajectories.labelling.evidence import judge_labels
-from estimators.trajectories.labelling.modes import ADRIFT, BURST, ENTRY, LEVEL_STRIDE, REDRAW, SPIKE, WIDE
+from estimators.trajectories.labelling.modes import (
+    ADRIFT,
+    BURST,
+    ENTRY,
+    HURRIED,
+    LEVEL_STRIDE,
+    REDRAW,
+    SPIKE,
+    WIDE,
+)
 from estimators.trajectories.parameters import Rates, TrackParameters
 from estimators.trajectories.spans import PRIOR_LOG, PRIOR_SPREAD, start_from_spans
+from estimators.trajectories.stale import rounding_of
 
 WINDOW = 256
 WINDOWS = 4
 """A track of more fixes than both together is judged by so many windows of so many fixes."""
-_UNIT, _STRIDES = 0.23, ((4, 2), (2, 1), (1,))
-"""Of logarithms: factors of 2.5 at first, of 1.26 at last."""
-_MOST_RUNS = 80
+_STRIDES = ((4, 2), (2, 1), (1,))
+"""Of the search, in units of its grid; the track is labelled anew between."""
+_HIDES, _SHORTEST_S = 2.0, 1e-6
+"""Times that what cannot be foretold of the motion hides noise."""
+_ROUNDED, _FINEST_M = 0.5, 1e-2
+"""Noise of what is rounded to units: it lasts while a track is slow, so that it is more than 12**-0.5. The
+least there is."""
 _REPORTED_LOG, _REPORTED_SPREAD = np.log(0.66), 0.4
 """White noise in units of a reported 68 % radius; 1/1.515 for two normal axes."""
 _LEAST_LOG, _LARGEST_LOG = np.log([1e-2, 1e-2, 1e-6]), np.log([1e4, 1e3, 1e4])
 _ROUNDS = 2
 _CALMER = 4.0
-"""Differences take manoeuvres for the usual motion: the search also begins with a density so much smaller, as a
-logarithm."""
+"""Differences take manoeuvres for the usual motion: the search also begins with a density so much smaller, as
+a logarithm."""
 _WIDTH, _HOPELESS = 8, 10.0
 """Of the beam while parameters are sought."""
 
@@ -194,25 +209,43 @@ def estimate(measured: Measured, sigma_m: float | None = None, top_speed: float 
 
         return evidence
 
+    def higher(labels: list[CodeArray], logs: FloatArray, strides: tuple[int, ...]) -> FloatArray:
+        return climb(under(labels), logs, axes, strides, least, _LARGEST_LOG)
+
+    least = _LEAST_LOG.copy()
+    if measured.reported is None:
+        least[0] = max(least[0], np.log(_ROUNDED * rounding_of(measured.fixes) + _FINEST_M))
     start = start_from_spans(measured.t, measured.fixes)
     if measured.reported is not None or sigma_m is not None:
         start[0] = mean[0]
     calm = start - np.array([0.0, 0.0, _CALMER])
     reached = []
     for one in (start, calm, mean):
-        there = np.clip(one, _LEAST_LOG, _LARGEST_LOG)
-        there = _climb(under(relabelled(there)[0]), there, axes, _STRIDES[0])
+        there = np.clip(one, least, _LARGEST_LOG)
+        there = higher(relabelled(there)[0], there, _STRIDES[0])
         labels, worth = relabelled(there)
         reached.append((worth, there, labels))
     best, logs, labels = max(reached, key=lambda one: one[0])
     for strides in _STRIDES[1:]:
-        there = _climb(under(labels), logs, axes, strides)
+        there = higher(labels, logs, strides)
         labels, worth = relabelled(there)
         if worth > best:
             best, logs = worth, there
+    if sigma_m is None:
+        logs = mean_square(under(labels), logs, 0)
+        logs[0] = max(logs[0], least[0], _hidden_noise(measured, logs))
     for _ in range(_ROUNDS):
         rates = _rates(windows, _parameters(logs, rates))
     return _parameters(logs, rates)
+
+
+def _hidden_noise(measured: Measured, logs: FloatArray) -> float:
+    """Least logarithm of noise that fixes so far apart allow to deny: less than it hides in the motion."""
+    if measured.reported is not None or measured.t.size < 2:
+        return float(logs[0])
+    step = float(np.median(np.diff(measured.t)))
+    motion = 0.5 * (logs[2] + np.log(max(step, _SHORTEST_S) ** 3 / 3.0))
+    return float(min(PRIOR_LOG[0], motion - np.log(_HIDES)))
 
 
 def from_spans(measured: Measured, sigma_m: float | None = None) -> TrackParameters:
@@ -236,35 +269,6 @@ def _windows(measured: Measured) -> list[Measured]:
     return [measured.window(first, first + WINDOW) for first in firsts]
 
 
-def _climb(
-    evidence: Callable[[FloatArray], float], start: FloatArray, axes: tuple[int, ...], strides: tuple[int, ...]
-) -> FloatArray:
-    """Ascend coordinate by coordinate on a grid of logarithms, with steps that shrink."""
-    seen: dict[tuple[int, ...], float] = {}
-
-    def logs_at(place: tuple[int, ...]) -> FloatArray:
-        return np.clip(start + _UNIT * np.array(place), _LEAST_LOG, _LARGEST_LOG)
-
-    def value_at(place: tuple[int, ...]) -> float:
-        if place not in seen:
-            seen[place] = evidence(logs_at(place))
-        return seen[place]
-
-    place: tuple[int, ...] = (0, 0, 0)
-    for stride in strides:
-        moved = True
-        while moved and len(seen) < _MOST_RUNS:
-            moved = False
-            for axis in axes:
-                for sign in (1, -1):
-                    while True:
-                        tried = (*place[:axis], place[axis] + sign * stride, *place[axis + 1 :])
-                        if not value_at(tried) > value_at(place):
-                            break
-                        place, moved = tried, True
-    return logs_at(place)
-
-
 def _rates(windows: list[Measured], parameters: TrackParameters) -> Rates:
     """Rates at which labels occur, each with a wide prior about its default."""
     fixes = entries = spikes = changes = 0.0
@@ -278,7 +282,7 @@ def _rates(windows: list[Measured], parameters: TrackParameters) -> Rates:
         entries += np.count_nonzero((kind == ENTRY) | ((kind == ADRIFT) & (labels != ADRIFT)))
         good_s += float(waited[~np.isin(kind, (ENTRY, BURST, REDRAW, ADRIFT))].sum())
         levels = labels[kind <= WIDE] // LEVEL_STRIDE
-        levels = np.where(levels == 3, 0, levels)
+        levels = np.where(levels == HURRIED, 0, levels)
         changes += np.count_nonzero(np.diff(levels.astype(np.int64)))
     default = Rates()
     return replace(

@@ -35,7 +35,7 @@ class Rates:
     wide: float = 0.003
     entry: float = 1e-3
     redraw: float = 1 / 40
-    teleport: float = 1e-10
+    teleport: float = 1e-6
     level: float = 1e-3
     walk: float = 1.0
     growth: float = 0.06

@@ -15,6 +15,8 @@ from estimators.arrays import BoolArray, FloatArray
 _CHANCE = 1e-3
 """A run of repeats less likely than this was not measured."""
 _UNITS = 2.5
+_SAME_M, _SOME = 1e-3, 0.05
+"""Steps are none below a millimetre; a twentieth is more than a few."""
 
 
 def repeats(latitude_deg: FloatArray, longitude_deg: FloatArray) -> BoolArray:
@@ -54,6 +56,27 @@ def repeats(latitude_deg: FloatArray, longitude_deg: FloatArray) -> BoolArray:
         if chance ** (stop - first) < _CHANCE:
             marked[first + 1 : stop + 1] = True
     return marked
+
+
+def rounding_of(fixes: FloatArray) -> float:
+    """Tell the unit to which coordinates are rounded: where some repeat, the least step.
+
+    Parameters
+    ----------
+    fixes : ndarray, shape (n, 2)
+        Metres.
+
+    Returns
+    -------
+    float
+        Metres; 0 where hardly any coordinate repeats.
+    """
+    units = [0.0]
+    for steps in np.abs(np.diff(fixes, axis=0)).T:
+        moved = steps[steps > _SAME_M]
+        if 0 < moved.size <= (1.0 - _SOME) * steps.size:
+            units.append(float(np.quantile(moved, _SOME)))
+    return max(units)
 
 
 def _are_fine(degrees: FloatArray) -> bool:

@@ -1,7 +1,7 @@
 """The path of fixes that say nothing of the track, neither where it is nor how it moves.
 
 A receiver that is drawn away from its place, or thrown off and creeping back, has fixes that lie on a smooth
-path of their own: constant velocity driven by white acceleration, as dense as that of a track that manoeuvres.
+path of their own: constant velocity driven by white acceleration, as dense as that of a track in a hurry.
 Which velocity the path has is unknown. Its covariance is the same for both axes: pp, pv, vv.
 """
 

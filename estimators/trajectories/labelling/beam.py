@@ -44,13 +44,15 @@ from estimators.trajectories.labelling.steps import begin, branch, follow, look_
 from estimators.trajectories.labelling.velocity import take_velocity
 
 WIDTH = 40
-BORN = 0.6
-GOING_ON = (NOMINAL, NOMINAL + LEVEL_STRIDE * HURRIED, BURST, ADRIFT, EXIT)
+_BORN = 0.6
+"""Of the threshold of hopelessness: for what begins at a fix. There is so much of it at every fix that it
+would fill the beam, and what begins in earnest soon stands out."""
+_GOING_ON = (NOMINAL, NOMINAL + LEVEL_STRIDE * HURRIED, BURST, ADRIFT, EXIT)
 """Hypotheses that are followed."""
 _FEWEST_OF_PLACE = 5
 _PLACES = 5
-"""A beam has room for hypotheses of so many places at least: those of one place differ in little, and together
-they would crowd out the one that turns out right."""
+"""A beam has room for hypotheses of so many places at least: those of one place differ in little, and would
+together crowd out the one that turns out right."""
 GOOD = (NOMINAL, WIDE, EXIT, TELEPORT)
 """Kinds of fixes that tell where the track is."""
 HOPELESS = 25.0
@@ -194,7 +196,7 @@ def label_track(
         total += best
         alive = 0
         for at in range(count):
-            if scores[at] >= best - (hopeless if kinds[at] in GOING_ON else BORN * hopeless):
+            if scores[at] >= best - (hopeless if kinds[at] in _GOING_ON else _BORN * hopeless):
                 scores[alive], kinds[alive], origin[alive] = scores[at], kinds[at], origin[at]
                 alive += 1
         kept = 0
@@ -227,12 +229,18 @@ def label_track(
             is_good = 1.0 if kind in GOOD else 0.0
             twin, neighbours = -1, 0
             for other in range(kept):
-                if new_mode[other] == now and are_twins(new_x[kept], new_P[kept], new_x[other], new_P[other]):
-                    if now != ASTRAY or are_twin_paths(
-                        new_path[kept], new_spread[kept], new_path[other], new_spread[other]
-                    ):
-                        twin = other
-                        break
+                if (
+                    new_mode[other] == now
+                    and are_twins(new_x[kept], new_P[kept], new_x[other], new_P[other])
+                    and (
+                        now != ASTRAY
+                        or are_twin_paths(
+                            new_path[kept], new_spread[kept], new_path[other], new_spread[other]
+                        )
+                    )
+                ):
+                    twin = other
+                    break
                 if is_near(new_x[kept], new_P[kept], new_x[other], new_P[other]):
                     neighbours += 1
             if twin >= 0:

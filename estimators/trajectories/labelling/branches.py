@@ -1,7 +1,7 @@
 """What may follow at a fix: the branches of one hypothesis and their scores.
 
-The functions append to ``scores`` and ``kinds`` from a count on and return the new count. Distances are squared:
-``off`` from the fix foretold, ``off_place`` from the place foretold, without its bias.
+The functions append to ``scores`` and ``kinds`` from a count on and return the new count. Distances are
+squared: ``off`` from the fix foretold, ``off_place`` from the place foretold, without its bias.
 """
 
 from __future__ import annotations
@@ -67,15 +67,14 @@ def branch_nominal(
     usual = log_normal(off, base + variance)
     elsewhere = log_anywhere(off_place, core, reach)
     aside = prior[GOOD_FIX] + log_normal(off, base + away + variance)
+    spike = stays + prior[SPIKED]
     if mode == RESTLESS:
-        spike = stays + prior[SPIKED]
         scores[count] = stays + prior[KEEPS_HURRYING] + prior[GOOD_FIX] + usual
         kinds[count] = NOMINAL + LEVEL_STRIDE * HURRIED
         scores[count + 1] = stays + prior[CALMS] + prior[GOOD_FIX] + usual
         kinds[count + 1] = NOMINAL
         count += 2
     else:
-        spike = stays + prior[SPIKED]
         noise = variance
         for other in range(LEVELS):
             change = prior[SAME_LEVEL] if other == mode else prior[OTHER_LEVEL]
@@ -143,6 +142,8 @@ def branch_astray(
     kinds[count + 1] = SPIKE
     scores[count + 2] = weight + ends + prior[GOOD_FIX] + log_normal(off_place, place + variance)
     kinds[count + 2] = EXIT
-    scores[count + 3] = weight + lasts + prior[SETTLES] + prior[GOOD_FIX] + log_normal(off_path, path + variance)
+    scores[count + 3] = (
+        weight + lasts + prior[SETTLES] + prior[GOOD_FIX] + log_normal(off_path, path + variance)
+    )
     kinds[count + 3] = ENTRY
     return count + 4

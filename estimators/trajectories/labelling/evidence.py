@@ -1,8 +1,8 @@
 """What a sequence of labels is worth: its likelihood, without a search.
 
-The labels need only say what each fix is. How one kind becomes another is read as the model has it: what comes
-after a burst is its exit, the first fix that is adrift leaves the track or is thrown off it, whichever is
-likelier.
+The labels need only say what each fix is. How one kind becomes another is read as the model has it: what
+comes after a burst is its exit, the first fix that is adrift leaves the track or is thrown off it, whichever
+is likelier.
 """
 
 from __future__ import annotations

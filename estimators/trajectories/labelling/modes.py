@@ -4,8 +4,8 @@ The state of a hypothesis is position p, velocity v and bias b, the same covaria
 measures p + b:
 
 - ``NOMINAL``: noise of variance R; the bias is an Ornstein-Uhlenbeck process of standard deviation c, the
-  coloured noise of every receiver. At a higher *noise level* R is 16 or 256 times as large; levels last. At the
-  level ``HURRIED`` the noise is usual and the motion is not: the acceleration is ten times as dense or more.
+  coloured noise of every receiver. At a higher *noise level* R is 16 or 256 times as large; levels last. At
+  the level ``HURRIED`` the noise is usual and the motion is not: acceleration is ten times as dense or more.
 - ``WIDE``: the same with 9 R, for this fix alone.
 - ``SPIKE``: anywhere. The fix tells nothing.
 - ``ENTRY``: a burst begins: the bias is anything, and fixes go on measuring the motion.

@@ -51,7 +51,9 @@ def reconcile(
     good, good_backward = is_good(forward), is_good(backward)
     parts = _parts(good, good_backward)
     for first, stop in parts:
-        around = slice(_agreed(good & good_backward, first, -_MARGIN), _agreed(good & good_backward, stop, _MARGIN))
+        around = slice(
+            _agreed(good & good_backward, first, -_MARGIN), _agreed(good & good_backward, stop, _MARGIN)
+        )
         other = labels[around].copy()
         other[first - around.start : stop - around.start] = backward[first:stop]
         if judge(around, other) > judge(around, labels[around]):
@@ -60,7 +62,7 @@ def reconcile(
 
 
 def doubtful(labels: CodeArray) -> list[slice]:
-    """Stretches that another reading may label otherwise: all but usual fixes and lone spikes, with a margin."""
+    """Stretches that another reading may label otherwise: all but usual fixes and spikes, with a margin."""
     plain = np.isin(labels, (NOMINAL, WIDE)) | (labels % LEVEL_STRIDE == SPIKE)
     odd = np.flatnonzero(~plain)
     if odd.size == 0:

@@ -1,7 +1,7 @@
 """One step of one hypothesis: foretell it, say what may follow, and follow one of that.
 
-A hypothesis is a state (position, velocity, bias) with its covariance, and while it is astray the path that the
-fixes follow, with its covariance.
+A hypothesis is a state (position, velocity, bias) with its covariance, and while it is astray the path that
+the fixes follow, with its covariance.
 """
 
 from __future__ import annotations
@@ -141,7 +141,7 @@ def follow(
             start_path(x, P, east, north, variance, path, spread)
         if level != GOES_ON:
             forget_bias(x, P, 0.0)
-        if level == GOES_ON or level == DRAWN_AWAY:
+        if level in (GOES_ON, DRAWN_AWAY):
             take_for_path(path, spread, east, north, variance)
         return ASTRAY
     if kind == EXIT:

@@ -71,9 +71,10 @@ def clean_live(
     --------
     >>> import numpy as np
     >>> t = np.arange(60.0)
-    >>> lat = 48.0 + 1e-4 * t + 2e-5 * np.random.default_rng(1).normal(size=60)
+    >>> rng = np.random.default_rng(1)
+    >>> lat = 48.0 + 1e-4 * t + 2e-5 * rng.normal(size=60)
+    >>> lon = 11.0 + 3e-5 * rng.normal(size=60)
     >>> lat[30] += 0.01
-    >>> lon = np.full(60, 11.0)
     >>> first = clean_live(t[:40], lat[:40], lon[:40])
     >>> len(first.settled), len(first.provisional)
     (9, 31)
