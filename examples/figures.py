@@ -1,7 +1,8 @@
 """The pictures of the documentation: ``make figures`` draws them.
 
 They are what ``plot()`` draws of ``examples/disk_usage.csv``, of the weekly carbon dioxide at Mauna Loa that
-statsmodels brings along, and of ``examples/pseudoranges.csv``; nothing is retouched.
+statsmodels brings along, of ``examples/pseudoranges.csv``, and of the track with which
+``docs/trajectories.md`` begins; nothing is retouched.
 """
 
 from __future__ import annotations
@@ -10,10 +11,11 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+import numpy as np
 import pandas as pd
 from statsmodels.datasets import co2
 
-from estimators import Fix, Trend, fit_trend, locate
+from estimators import Fix, Track, Trend, clean_trajectory, fit_trend, locate
 from estimators.adapters.plotting import Theme, render
 
 if TYPE_CHECKING:
@@ -21,7 +23,7 @@ if TYPE_CHECKING:
 
 IMAGES = Path(__file__).resolve().parents[1] / "docs" / "images"
 THEMES: dict[str, Theme] = {"": "light", "_dark": "dark"}
-Answer = TypeVar("Answer", Trend, Fix)
+Answer = TypeVar("Answer", Trend, Fix, Track)
 
 
 def fit_disk() -> Trend:
@@ -68,21 +70,39 @@ def locate_receiver() -> Fix:
     )
 
 
+def clean_ride() -> Track:
+    """Clean the track of the page on trajectories: two fixes far off, twenty by way of a wall.
+
+    Raises
+    ------
+    ValueError
+        If there is no track.
+    """
+    random = np.random.RandomState(4)
+    t = np.arange(300.0)
+    lat = 48.1 + 9e-5 * t + 3e-5 * random.standard_normal(300)
+    lon = 11.5 + 4e-4 * np.sin(t / 60) + 4e-5 * random.standard_normal(300)
+    lat[[40, 90]] += [0.02, -0.004]
+    lat[150:170] += 0.0006
+    return _found(clean_trajectory(t, lat, lon))
+
+
 def _found(answer: Answer | NoFit) -> Answer:
-    if isinstance(answer, Trend | Fix):
+    if isinstance(answer, Trend | Fix | Track):
         return answer
     raise ValueError(answer.summary())
 
 
 def draw(directory: Path) -> list[Path]:
     """Write every picture into a directory; their paths."""
-    disk, carbon, sky = fit_disk(), fit_carbon_dioxide(), locate_receiver()
+    disk, carbon, sky, ride = fit_disk(), fit_carbon_dioxide(), locate_receiver(), clean_ride()
     paths = []
     for suffix, theme in THEMES.items():
         figures = {
             "disk_usage": disk.plot(width_px=800, height_px=420, theme=theme, value_label="GB used"),
             "carbon_dioxide": carbon.plot(width_px=800, height_px=420, theme=theme, value_label="ppm"),
             "sky": sky.plot(width_px=480, height_px=480, theme=theme),
+            "ride": ride.plot("error", width_px=800, height_px=450, theme=theme),
         }
         for name, figure in figures.items():
             path = directory / f"{name}{suffix}.svg"

@@ -88,13 +88,13 @@ def drawn_rows(at: FloatArray, curves_px: FloatArray, span: tuple[float, float],
     inside = np.flatnonzero((at >= span[0]) & (at <= span[1]))
     corners = np.unique([0, inside[0], inside[-1], at.size - 1])
     if at.size > CROWDED * columns:
-        return np.union1d(corners, _lowest_and_highest(at, curves_px[0], columns))
+        return np.union1d(corners, lowest_and_highest(at, curves_px[0], columns))
     known = curves_px[np.isfinite(curves_px).all(axis=1)]
     parts = [_strokes(at, known, int(a), int(b)) for a, b in pairwise(corners)]
     return np.unique(np.concatenate([corners, *parts]))
 
 
-def _lowest_and_highest(at: FloatArray, value: FloatArray, columns: int) -> IntArray:
+def lowest_and_highest(at: FloatArray, value: FloatArray, columns: int) -> IntArray:
     """Rows of the least and the largest value of every column of pixels."""
     share = (at - at[0]) / (at[-1] - at[0])
     column = np.minimum((share * columns).astype(np.int64), columns - 1)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import dataclasses
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from matplotlib import dates
+from matplotlib.colors import to_hex, to_rgb
 
 from estimators.adapters.figure_curves import drawn_rows, fine_times
 from estimators.arrays import BoolArray, FloatArray, IntArray, Reason
@@ -49,6 +50,29 @@ PALETTES: dict[str, Palette] = {
 }
 
 
+def mixed(color: str, paper: str, strength: float) -> str:
+    """Colour of so much strength over paper, without being transparent."""
+    over, under = np.array(to_rgb(color)), np.array(to_rgb(paper))
+    red, green, blue = (strength * over + (1.0 - strength) * under).tolist()
+    return to_hex((red, green, blue))
+
+
+class Paper(Protocol):
+    """What headings and legends have to know of a picture."""
+
+    @property
+    def palette(self) -> Palette:
+        """Colours of its theme."""
+
+    @property
+    def width_px(self) -> int:
+        """Width in CSS pixels."""
+
+    @property
+    def small(self) -> bool:
+        """Whether text and markers must be smaller."""
+
+
 @dataclass(frozen=True, slots=True)
 class Clock:
     """Internal time to what matplotlib draws: days for points in time, numbers otherwise.
@@ -69,12 +93,16 @@ class Clock:
     @classmethod
     def of(cls, trend: Trend) -> Clock:
         """Choose the scale on which neighbouring times of this series can be told apart."""
-        first, last = trend.geometry.span
-        if trend.axis.kind == "datetime":
+        return cls.over(trend.axis, *trend.geometry.span)
+
+    @classmethod
+    def over(cls, axis: TimeAxis, first: float, last: float) -> Clock:
+        """Choose the scale for internal times of this span."""
+        if axis.kind == "datetime":
             # Days as floats resolve microseconds: shorter series are drawn in seconds since their origin.
-            return cls(trend.axis, last - first >= 1.0, 0.0)
-        origin = float(trend.axis.origin)
-        return cls(trend.axis, False, origin if abs(origin) < 1e6 * (last - first) else 0.0)
+            return cls(axis, last - first >= 1.0, 0.0)
+        origin = float(axis.origin)
+        return cls(axis, False, origin if abs(origin) < 1e6 * (last - first) else 0.0)
 
     def draw(self, internal: FloatArray) -> FloatArray:
         """Place internal times on matplotlib's axis."""

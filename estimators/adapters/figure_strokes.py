@@ -7,10 +7,9 @@ import textwrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.colors import to_hex, to_rgb
 from matplotlib.lines import Line2D
 
-from estimators.adapters.figure_sheet import Sheet, mdates
+from estimators.adapters.figure_sheet import Clock, Paper, Sheet, mdates, mixed
 from estimators.adapters.thinning import one_per_cell
 from estimators.arrays import FloatArray, IntArray
 
@@ -18,13 +17,14 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.legend import Legend
 
     from estimators.trends.trend import RunnerUp, Trend
 
 # More markers than this are thinned, and are an image inside an SVG.
 MAX_MARKERS = 3_000
 # Labels at least this certain are drawn with so much of their colour, the rest being paper.
-_CERTAINTIES = ((0.9, 1.0), (0.6, 0.55), (0.0, 0.25))
+CERTAINTIES = ((0.9, 1.0), (0.6, 0.55), (0.0, 0.25))
 # A cross is all outline: paler than this, it is no longer seen.
 _PALEST_CROSS = 0.45
 # Cycles narrower than this many pixels are drawn with a finer line; those that are hardly told apart, pale.
@@ -51,14 +51,14 @@ def draw_points(axes: Axes, sheet: Sheet) -> list[Artist]:
         if total:
             size = _draw_markers(axes, sheet, np.flatnonzero(chosen & visible), marker, color, layer)
             look = {"marker": marker, "color": color, "markersize": max(size + 1, 4.0)}
-            entries.append(_entry(f"{name} ({total:,})", **look))
-    least_of_all = _CERTAINTIES[0][0]
+            entries.append(entry(f"{name} ({total:,})", **look))
+    least_of_all = CERTAINTIES[0][0]
     if bool(np.any(sheet.certainty[visible & ~sheet.unused] < least_of_all)):
         pale = {
-            "markerfacecolor": _mixed(palette.inlier, palette.paper, 0.25),
+            "markerfacecolor": mixed(palette.inlier, palette.paper, 0.25),
             "markeredgecolor": palette.inlier,
         }
-        entries.append(_entry("paler: less sure", marker="o", markersize=5, **pale))
+        entries.append(entry("paler: less sure", marker="o", markersize=5, **pale))
     return entries
 
 
@@ -73,13 +73,13 @@ def _draw_markers(axes: Axes, sheet: Sheet, rows: IntArray, marker: str, color: 
         rows = rows[one_per_cell(sheet.x[rows], sheet.y[rows], columns, rows_up)]
     look: dict[str, Any] = _marker(marker, rows.size, sheet.small)
     upper = np.inf
-    for least, strength in _CERTAINTIES:
+    for least, strength in CERTAINTIES:
         here = rows[(sheet.certainty[rows] >= least) & (sheet.certainty[rows] < upper)]
         upper = least
         if not here.size:
             continue
         seen = max(strength, _PALEST_CROSS) if marker == "x" else strength
-        face = _mixed(color, sheet.palette.paper, seen)
+        face = mixed(color, sheet.palette.paper, seen)
         outline = face if marker == "x" or dense else color
         axes.plot(
             sheet.x[here],
@@ -124,7 +124,7 @@ def draw_beyond(axes: Axes, sheet: Sheet) -> list[Artist]:
         )
     if not total:
         return []
-    return [_entry(f"beyond the frame ({total:,})", marker="^", markersize=5, markeredgewidth=0, color=color)]
+    return [entry(f"beyond the frame ({total:,})", marker="^", markersize=5, markeredgewidth=0, color=color)]
 
 
 def draw_lines(axes: Axes, trend: Trend, sheet: Sheet) -> list[Artist]:
@@ -137,13 +137,13 @@ def draw_lines(axes: Axes, trend: Trend, sheet: Sheet) -> list[Artist]:
     # Strokes side by side are an area, under which the points are still to be seen.
     alpha = 1.0 if sheet.cycle_px >= _MERGED_CYCLE_PX else 0.4
     axes.plot(x[inside], value[inside], color=ink, linewidth=width, alpha=alpha, zorder=3)
-    entries: list[Artist] = [_entry("trend", linestyle="-", color=ink, linewidth=width)]
+    entries: list[Artist] = [entry("trend", linestyle="-", color=ink, linewidth=width)]
     outside = [part for part in (grid <= first, grid >= last) if np.count_nonzero(part) > 1]
     for part in outside:
         look: dict[str, Any] = {"color": ink, "linewidth": min(1.5, width), "linestyle": _DASHES}
         axes.plot(x[part], value[part], alpha=alpha, zorder=3, **look)
     if outside:
-        entries.append(_entry("extrapolated", linestyle=_DASHES, color=ink, linewidth=min(1.5, width)))
+        entries.append(entry("extrapolated", linestyle=_DASHES, color=ink, linewidth=min(1.5, width)))
     entries += _draw_predicted(axes, trend, sheet)
     entries += _draw_runner_up(axes, trend, sheet)
     return entries
@@ -162,7 +162,7 @@ def _draw_predicted(axes: Axes, trend: Trend, sheet: Sheet) -> list[Artist]:
         "markeredgecolor": sheet.palette.ink,
     }
     axes.plot(sheet.clock.draw(internal[known]), trend.prediction.value[known], zorder=3.5, **look)
-    return [_entry(f"predicted ({np.count_nonzero(known):,})", **look)]
+    return [entry(f"predicted ({np.count_nonzero(known):,})", **look)]
 
 
 def _draw_runner_up(axes: Axes, trend: Trend, sheet: Sheet) -> list[Artist]:
@@ -174,7 +174,7 @@ def _draw_runner_up(axes: Axes, trend: Trend, sheet: Sheet) -> list[Artist]:
         return []
     look: dict[str, Any] = {"color": sheet.palette.other, "linewidth": 1.4, "linestyle": _DOTS}
     axes.plot(sheet.clock.draw(sheet.curves.time), value, zorder=2.8, **look)
-    return [_entry(f"runner-up ({other.inliers:,})", **look)]
+    return [entry(f"runner-up ({other.inliers:,})", **look)]
 
 
 def _other_curve(trend: Trend, other: RunnerUp, internal: FloatArray) -> FloatArray | None:
@@ -213,7 +213,7 @@ def dress_axes(
     axes: Axes, sheet: Sheet, heading: str, time_label: str | None, value_label: str | None
 ) -> None:
     """Limits, grid, ticks and names, with as little ink as possible."""
-    palette, size = sheet.palette, _text_size(sheet)
+    palette, size = sheet.palette, text_size(sheet)
     axes.set_facecolor(palette.paper)
     axes.set_ylim(sheet.low, sheet.high)
     x = sheet.clock.draw(sheet.curves.time)
@@ -226,23 +226,33 @@ def dress_axes(
     axes.set_axisbelow(True)
     axes.tick_params(axis="both", colors=palette.quiet, labelsize=size, length=0)
     axes.tick_params(axis="x", length=3)
-    if sheet.clock.dates:
-        locator = mdates.AutoDateLocator(minticks=3, maxticks=5 if sheet.small else 8)
-        axes.xaxis.set_major_locator(locator)
-        axes.xaxis.set_major_formatter(mdates.ConciseDateFormatter(locator))
-    for label in (axes.xaxis.get_offset_text(), axes.yaxis.get_offset_text()):
-        label.set_color(palette.quiet)
-        label.set_fontsize(size)
-    # A dollar sign in a caller's text is a dollar sign: nothing is set as mathematics.
-    if heading:
-        axes.set_title(
-            _broken(heading, int(sheet.width_px * _PX_TO_PT / (_LETTER_EM * (size + 1.5)))),
-            loc="left", color=palette.ink, fontsize=size + 1.5, fontweight="bold", parse_math=False,
-        )  # fmt: skip
+    dress_clock(axes, sheet.clock, sheet)
+    axes.yaxis.get_offset_text().set(color=palette.quiet, fontsize=size)
+    draw_heading(axes, sheet, heading)
     if name := time_label or sheet.clock.label:
         axes.set_xlabel(name, color=palette.quiet, fontsize=size, loc="right", parse_math=False)
     if value_label:
         axes.set_ylabel(value_label, color=palette.quiet, fontsize=size, loc="top", parse_math=False)
+
+
+def dress_clock(axes: Axes, clock: Clock, paper: Paper) -> None:
+    """Ticks of the axis of times: of the calendar where the times are points in time."""
+    if clock.dates:
+        locator = mdates.AutoDateLocator(minticks=3, maxticks=5 if paper.small else 8)
+        axes.xaxis.set_major_locator(locator)
+        axes.xaxis.set_major_formatter(mdates.ConciseDateFormatter(locator))
+    axes.xaxis.get_offset_text().set(color=paper.palette.quiet, fontsize=text_size(paper))
+
+
+def draw_heading(axes: Axes, paper: Paper, heading: str) -> None:
+    """Title over the axes, broken where it is too long; an empty one is none."""
+    size = text_size(paper) + 1.5
+    # A dollar sign in a caller's text is a dollar sign: nothing is set as mathematics.
+    if heading:
+        axes.set_title(
+            _broken(heading, int(paper.width_px * _PX_TO_PT / (_LETTER_EM * size))),
+            loc="left", color=paper.palette.ink, fontsize=size, fontweight="bold", parse_math=False,
+        )  # fmt: skip
 
 
 def _broken(heading: str, letters: int) -> str:
@@ -251,19 +261,19 @@ def _broken(heading: str, letters: int) -> str:
     return heading if lines < 2 else textwrap.fill(heading, min(letters, math.ceil(len(heading) / lines) + 2))
 
 
-def draw_legend(figure: Figure, entries: list[Artist], sheet: Sheet) -> None:
+def draw_legend(figure: Figure, entries: list[Artist], sheet: Paper) -> Legend:
     """Legend below the axes, where it hides nothing, to be read row by row."""
     columns = 2 if sheet.width_px < 380 else 3 if sheet.width_px < 620 else 4
     # Matplotlib fills a legend column by column, the first columns being the longer ones.
     rows, longer = divmod(len(entries), columns)
     lengths = [rows + (column < longer) for column in range(columns)]
     ordered = [entries[row * columns + column] for column in range(columns) for row in range(lengths[column])]
-    figure.legend(
+    return figure.legend(
         handles=ordered,
         loc="outside lower left",
         ncols=columns,
         frameon=False,
-        fontsize=_text_size(sheet) - 0.5,
+        fontsize=text_size(sheet) - 0.5,
         labelcolor=sheet.palette.ink,
         handlelength=1.2 if sheet.small else 1.8,
         handletextpad=0.6,
@@ -274,15 +284,11 @@ def draw_legend(figure: Figure, entries: list[Artist], sheet: Sheet) -> None:
     )
 
 
-def _text_size(sheet: Sheet) -> float:
+def text_size(sheet: Paper) -> float:
+    """Points of the text of a picture."""
     return 7.5 if sheet.small else 9.0
 
 
-def _entry(label: str, **look: Any) -> Line2D:
+def entry(label: str, **look: Any) -> Line2D:
+    """Entry of a legend."""
     return Line2D([], [], label=label, **{"linestyle": "none", **look})
-
-
-def _mixed(color: str, paper: str, strength: float) -> str:
-    over, under = np.array(to_rgb(color)), np.array(to_rgb(paper))
-    red, green, blue = (strength * over + (1.0 - strength) * under).tolist()
-    return to_hex((red, green, blue))

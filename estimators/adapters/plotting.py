@@ -18,7 +18,7 @@ from matplotlib import style as mpl_style
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from estimators.adapters.figure_sheet import PALETTES, Sheet
+from estimators.adapters.figure_sheet import PALETTES, Palette, Sheet
 from estimators.adapters.figure_strokes import (
     draw_bands,
     draw_beyond,
@@ -86,11 +86,7 @@ def trend_figure(
     >>> render(picture, "png")[:4]
     b'\x89PNG'
     """
-    if not (200 <= width_px <= 4000 and 150 <= height_px <= 4000):
-        raise InputError("size", "width must lie between 200 and 4000 pixels, height between 150 and 4000")
-    if theme not in PALETTES:
-        raise InputError("theme", f"unknown theme {theme!r}; known: {', '.join(PALETTES)}")
-    sheet = Sheet.of(trend, PALETTES[theme], width_px, height_px)
+    sheet = Sheet.of(trend, palette_of(width_px, height_px, theme), width_px, height_px)
     with drawing():
         figure = Figure(
             figsize=(width_px / _DPI, height_px / _DPI),
@@ -139,6 +135,48 @@ def render(figure: Figure, format: FigureFormat) -> bytes:  # noqa: A002
         else:
             figure.savefig(sink, format="png", dpi=_DPI, metadata={"Software": None})
     return sink.getvalue()
+
+
+def palette_of(width_px: int, height_px: int, theme: str) -> Palette:
+    """Colours of a theme, for a picture of a size that can be drawn.
+
+    Raises
+    ------
+    InputError
+        If the size or the theme cannot be used.
+    """
+    if not (200 <= width_px <= 4000 and 150 <= height_px <= 4000):
+        raise InputError("size", "width must lie between 200 and 4000 pixels, height between 150 and 4000")
+    if theme not in PALETTES:
+        raise InputError("theme", f"unknown theme {theme!r}; known: {', '.join(PALETTES)}")
+    return PALETTES[theme]
+
+
+@contextmanager
+def canvas(width_px: int, height_px: int, theme: str) -> Iterator[tuple[Figure, Palette]]:
+    """Blank figure of a size and the colours to draw it in, for as long as it is drawn.
+
+    Parameters
+    ----------
+    width_px, height_px : int
+        CSS pixels, 200 to 4000 and 150 to 4000.
+    theme : str
+        Key of the palettes.
+
+    Raises
+    ------
+    InputError
+        If the size or the theme cannot be used.
+    """
+    palette = palette_of(width_px, height_px, theme)
+    with drawing():
+        figure = Figure(
+            figsize=(width_px / _DPI, height_px / _DPI),
+            dpi=_DPI,
+            layout=ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.08),
+            facecolor=palette.paper,
+        )
+        yield figure, palette
 
 
 @contextmanager

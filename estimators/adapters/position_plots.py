@@ -6,22 +6,19 @@ colour; the colours are those of Okabe and Ito (2008). The same answer gives the
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from typing import Any, Literal
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from estimators.adapters.figure_sheet import PALETTES, Palette
-from estimators.adapters.plotting import Theme, drawing
+from estimators.adapters.figure_sheet import Palette
+from estimators.adapters.plotting import Theme, canvas
 from estimators.arrays import ArrayLike, FloatArray, InputError
 from estimators.gnss.fix import Fix, SatelliteStatus
 
 PositionPicture = Literal["sky", "residuals"]
 
-_DPI = 96
 _MARKS: dict[SatelliteStatus, str] = {"used": "o", "excluded": "X", "untestable": "o"}
 _TITLES: dict[SatelliteStatus, str] = {
     "used": "used",
@@ -55,7 +52,7 @@ def sky_figure(
         If the size or the theme cannot be used.
     """
     inner = fix.satellites
-    with _canvas(width_px, height_px, theme) as (figure, palette):
+    with canvas(width_px, height_px, theme) as (figure, palette):
         axes: Any = figure.add_subplot(projection="polar")
         axes.set_facecolor(palette.paper)
         axes.set_theta_zero_location("N")
@@ -103,7 +100,7 @@ def residual_figure(
     """
     inner = fix.satellites
     rows = [row for row, status in enumerate(inner.status) if status in _MARKS]
-    with _canvas(width_px, height_px, theme) as (figure, palette):
+    with canvas(width_px, height_px, theme) as (figure, palette):
         axes = _plane(figure, palette)
         # Linear within a few metres and logarithmic beyond: a fault of a kilometre hides no residual.
         axes.set_yscale("symlog", linthresh=10.0)
@@ -168,7 +165,7 @@ def stanford_figure(
     error, level = error[known], level[known]
     missed = int(np.count_nonzero(error > level))
     limit = 1.1 * max(float(np.max(error)), float(np.quantile(level, 0.99)), alert_m)
-    with _canvas(width_px, height_px, theme) as (figure, palette):
+    with canvas(width_px, height_px, theme) as (figure, palette):
         axes = _plane(figure, palette)
         axes.fill_between([0.0, limit], [0.0, limit], 0.0, color=palette.outlier, alpha=0.12, linewidth=0)
         axes.axhline(alert_m, color=palette.quiet, linewidth=1, linestyle="--")
@@ -184,24 +181,6 @@ def stanford_figure(
 
 def _by_side(error: FloatArray, level: FloatArray, palette: Palette) -> list[str]:
     return [palette.outlier if wrong else palette.inlier for wrong in error > level]
-
-
-@contextmanager
-def _canvas(width_px: int, height_px: int, theme: str) -> Iterator[tuple[Figure, Palette]]:
-    """Blank figure of a size and the colours to draw it in, for as long as it is drawn."""
-    if not (200 <= width_px <= 4000 and 150 <= height_px <= 4000):
-        raise InputError("size", "width must lie between 200 and 4000 pixels, height between 150 and 4000")
-    if theme not in PALETTES:
-        raise InputError("theme", f"unknown theme {theme!r}; known: {', '.join(PALETTES)}")
-    palette = PALETTES[theme]
-    with drawing():
-        figure = Figure(
-            figsize=(width_px / _DPI, height_px / _DPI),
-            dpi=_DPI,
-            layout=ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.08),
-            facecolor=palette.paper,
-        )
-        yield figure, palette
 
 
 def _colour(status: SatelliteStatus, palette: Palette) -> str:

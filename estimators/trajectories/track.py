@@ -23,6 +23,7 @@ from estimators.trajectories.reasons import FixReason
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,6 +212,27 @@ class Track:
             Whether to add a feature per row with its label.
         """
         return track_to_geojson(self, points=points)
+
+    def plot(self, kind: Literal["map", "error"] = "map", **style: Any) -> Figure:
+        """Map of the track, or how far each fix is off over time (extra ``[plot]``).
+
+        Parameters
+        ----------
+        kind : {"map", "error"}
+        **style
+            ``width_px``, ``height_px``, ``theme`` and ``title``; see
+            :func:`estimators.adapters.track_plots.map_figure`.
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is not installed (extra ``[plot]``).
+        InputError
+            If the kind, the size or the theme is unknown.
+        """
+        from estimators.adapters.track_plots import plot_track  # noqa: PLC0415
+
+        return plot_track(self, kind, **style)
 
     def _repr_html_(self) -> str:
         return track_to_html(self)

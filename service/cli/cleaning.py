@@ -17,7 +17,8 @@ from service.codecs.arguments import validated
 from service.codecs.limits import Limits
 from service.codecs.trajectories.registry import WRITERS, TrackWriter
 from service.errors import Problem, ProblemType
-from service.schemas.trajectories import TrackAnswerQuery, TrackArguments
+from service.schemas.fields import Theme
+from service.schemas.trajectories import Figure, TrackAnswerQuery, TrackArguments
 from service.trajectories.cleaned import CleanedTracks, DeviceTrack, clean_recorded, refusal_of
 from service.trajectories.files import read_files
 from service.trajectories.recorded import Recorded, of_files
@@ -54,7 +55,9 @@ class CleanRequest:
     points : bool
         GeoJSON: a point per fix.
     to : str or None
-    output : Path or None
+    output, plot : Path or None
+    figure, theme : str
+        Of the picture.
     """
 
     files: tuple[str, ...]
@@ -63,6 +66,9 @@ class CleanRequest:
     points: bool
     to: CleanOutput | None
     output: Path | None
+    plot: Path | None = None
+    figure: Figure = "map"
+    theme: Theme = "light"
 
 
 def run_clean(request: CleanRequest) -> None:
@@ -74,14 +80,15 @@ def run_clean(request: CleanRequest) -> None:
     """
     form = _form(request)
     writer = next((row for row in WRITERS if row.name == form), None)
+    artist = None if request.plot is None else _artist(request.plot)
     source = ", ".join(STDIN if file == "-" else file for file in request.files)
     try:
         arguments = validated(
             TrackArguments, {name: value for name, value in request.arguments.items() if value is not None}
         )
         recorded = _read(request, arguments)
-        if writer is not None:
-            writer.check(recorded)
+        for chosen in filter(None, (writer, artist)):
+            chosen.check(recorded)
         cleaned = clean_recorded(recorded, arguments, lambda _done, _total: None)
     except Problem as problem:
         fail(f"{source}: {problem.detail.rstrip('.')}.", 1 if problem.kind is ProblemType.no_track else 2)
@@ -89,6 +96,8 @@ def run_clean(request: CleanRequest) -> None:
     if len(refused) == len(cleaned.tracks):
         fail(f"{source}: no device has a track; {_why(refused[0])}.", NO_TREND)
     _put(_pieces(cleaned, writer, points=request.points), request.output, is_text=writer is None)
+    if request.plot is not None and artist is not None:
+        _draw(cleaned, artist, request.plot, request)
     for item in refused:
         remark(f"{_name(item)} has no track: {_why(item)}.")
 
@@ -104,6 +113,21 @@ def _form(request: CleanRequest) -> CleanOutput:
     if request.files.count("-") > 1:
         fail("-: standard input can be read once; name it once.")
     return form
+
+
+def _artist(path: Path) -> TrackWriter:
+    """Find who writes a picture, checked before the work against where it goes."""
+    artist = next((row for row in WRITERS if row.is_picture and f".{row.name}" == path.suffix.lower()), None)
+    if artist is None:
+        fail(f"--plot {path}: a picture is written as .png or .svg; change the ending.")
+    if not path.parent.is_dir():
+        fail(f"--plot {path}: there is no directory {path.parent}; make it, or choose another place.")
+    return artist
+
+
+def _draw(cleaned: CleanedTracks, artist: TrackWriter, path: Path, request: CleanRequest) -> None:
+    query = TrackAnswerQuery(figure=request.figure, theme=request.theme)
+    _save(artist.write(cleaned, query), path, "--plot")
 
 
 def _read(request: CleanRequest, arguments: TrackArguments) -> Recorded:
@@ -171,10 +195,14 @@ def _put(pieces: Iterator[bytes], output: Path | None, *, is_text: bool) -> None
         for piece in pieces:
             typer.echo(piece.decode() if is_text else piece, nl=False)
         return
+    _save(pieces, output, "--output")
+
+
+def _save(pieces: Iterator[bytes], path: Path, option: str) -> None:
     try:
-        with output.open("wb") as file:
+        with path.open("wb") as file:
             for piece in pieces:
                 file.write(piece)
     except OSError as error:
-        fail(f"--output {output}: cannot be written ({error.strerror}); choose another place.")
-    remark(f"Wrote {output}.")
+        fail(f"{option} {path}: cannot be written ({error.strerror}); choose another place.")
+    remark(f"Wrote {path}.")

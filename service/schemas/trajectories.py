@@ -7,9 +7,10 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 import estimators
-from service.schemas.fields import Level, TimeUnit, one_of
+from service.schemas.fields import Level, Theme, TimeUnit, one_of
 
-TrackFormat = Literal["json", "geojson", "gpx", "csv", "arrow", "parquet"]
+TrackFormat = Literal["json", "geojson", "gpx", "csv", "arrow", "parquet", "svg", "png"]
+Figure = Literal["map", "error"]
 
 METHODS = tuple(estimators.track_methods())
 
@@ -101,6 +102,19 @@ class TrackAnswerQuery(BaseModel):
             description="JSON: whether the answer has the columns per fix (default true). GeoJSON: whether "
             "it has a point per fix with its label instead of lines (default false)."
         ),
+    ] = None
+    figure: Annotated[
+        Figure,
+        Field(
+            description="Which picture: a map of the track, or how far each fix is off over time. Either "
+            "shows one track."
+        ),
+    ] = "map"
+    width_px: Annotated[int, Field(ge=200, le=4000, description="Width of a picture.")] = 800
+    height_px: Annotated[int, Field(ge=150, le=4000, description="Height of a picture.")] = 600
+    theme: Annotated[Theme, Field(description="Colours of a picture.")] = "light"
+    title: Annotated[
+        str | None, Field(max_length=120, pattern=r"^[^\x00-\x1f\x7f]*$", description="Title of a picture.")
     ] = None
 
 

@@ -225,3 +225,31 @@ def test_binary_answers_have_the_rows_of_the_file(table: Path, tmp_path: Path) -
 def test_the_methods_are_those_of_the_library(table: Path) -> None:
     for name in estimators.track_methods():
         assert done(clean(table, "--method", name)).startswith(f"Track by {name}\n")
+
+
+@pytest.mark.parametrize(("ending", "start"), [("svg", b"<?xml"), ("png", b"\x89PNG")])
+def test_a_picture_is_written_beside_the_answer(
+    table: Path, tmp_path: Path, ending: str, start: bytes
+) -> None:
+    result = clean(table, "--plot", tmp_path / f"map.{ending}")
+    assert done(result) == done(clean(table))
+    assert f"Wrote {tmp_path / f'map.{ending}'}." in result.stderr
+    assert (tmp_path / f"map.{ending}").read_bytes().startswith(start)
+
+
+def test_figure_and_theme_choose_another_picture(table: Path, tmp_path: Path) -> None:
+    asked: list[tuple[str, ...]] = [(), ("--figure", "error"), ("--theme", "dark")]
+    for place, more in enumerate(asked):
+        done(clean(table, "--plot", tmp_path / f"{place}.svg", *more))
+    assert len({(tmp_path / f"{place}.svg").read_bytes() for place in range(3)}) == 3
+
+
+@pytest.mark.parametrize(("path", "word"), [("map.gif", ".png or .svg"), ("nowhere/map.png", "nowhere")])
+def test_a_picture_that_cannot_be_written_is_refused_before_the_work(
+    table: Path, tmp_path: Path, path: str, word: str
+) -> None:
+    assert word in error_of(clean(table, "--plot", tmp_path / path))
+
+
+def test_a_picture_of_several_tracks_is_refused(table: Path, tmp_path: Path) -> None:
+    assert "one track" in error_of(clean(table, table, "--plot", tmp_path / "map.png"))

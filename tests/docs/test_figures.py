@@ -28,7 +28,9 @@ def test_the_position_in_the_example_is_where_the_receiver_was_put() -> None:
 def test_every_committed_picture_is_one_that_the_script_draws() -> None:
     committed = {path.name for path in figures.IMAGES.iterdir() if not path.name.startswith("benchmark")}
     drawn = {
-        f"{name}{theme}.svg" for name in ("disk_usage", "carbon_dioxide", "sky") for theme in figures.THEMES
+        f"{name}{theme}.svg"
+        for name in ("disk_usage", "carbon_dioxide", "sky", "ride")
+        for theme in figures.THEMES
     }
     assert committed == drawn
 

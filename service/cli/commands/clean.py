@@ -57,6 +57,15 @@ def clean(
         str | None, typer.Option(metavar="COL", help="Tables: column of the accuracies (68 % radii).")
     ] = None,
     time_unit: TimeUnit = None,
+    plot: Annotated[
+        Path | None,
+        typer.Option(metavar="PATH", help="Write a picture of the track (.png or .svg).", dir_okay=False),
+    ] = None,
+    figure: Annotated[
+        Literal["map", "error"],
+        typer.Option(help="--plot: a map, or how far each fix is off over time."),
+    ] = "map",
+    theme: Annotated[Literal["light", "dark"], typer.Option(help="--plot: its colours.")] = "light",
     points: Annotated[
         bool, typer.Option("--points", help="geojson: a point per fix with its label, instead of lines.")
     ] = False,
@@ -83,6 +92,9 @@ def clean(
                 "time_unit": time_unit,
             },
             points=points,
+            plot=plot,
+            figure=figure,
+            theme=theme,
             to=to,
             output=output,
         )

@@ -57,6 +57,8 @@ class TrackWriter:
         ``module:function`` in this package.
     needs_moments : bool
         Whether times have to be points in time.
+    is_picture : bool
+        Whether it shows one track.
     """
 
     name: TrackFormat
@@ -64,6 +66,7 @@ class TrackWriter:
     content_type: str
     codec: str
     needs_moments: bool = False
+    is_picture: bool = False
 
     def write(self, cleaned: CleanedTracks, query: TrackAnswerQuery) -> Iterator[bytes]:
         """Bytes of an answer, piece by piece."""
@@ -76,8 +79,14 @@ class TrackWriter:
         Raises
         ------
         Problem
-            422 if the format needs points in time and there are plain numbers.
+            422 if the format needs points in time and there are plain numbers, or is a picture and there are
+            several tracks.
         """
+        tracks = len(recorded.recording.devices)
+        if self.is_picture and tracks > 1:
+            raise invalid_value(
+                "format", f"{self.name} shows one track and there are {tracks}; send one, or ask for another"
+            )
         if self.needs_moments and recorded.time.dtype.kind != "M":
             raise invalid_value(
                 "format",
@@ -117,6 +126,8 @@ WRITERS: tuple[TrackWriter, ...] = (
     TrackWriter("csv", "text/csv", "text/csv; charset=utf-8; header=present", "files_out:write_csv"),
     TrackWriter("arrow", ARROW_STREAM, ARROW_STREAM, "binary:write_arrow"),
     TrackWriter("parquet", PARQUET, PARQUET, "binary:write_parquet"),
+    TrackWriter("svg", "image/svg+xml", "image/svg+xml", "pictures:write_svg", is_picture=True),
+    TrackWriter("png", "image/png", "image/png", "pictures:write_png", is_picture=True),
 )
 
 
