@@ -44,11 +44,12 @@ from estimators.trajectories.labelling.steps import begin, branch, follow, look_
 from estimators.trajectories.labelling.velocity import take_velocity
 
 WIDTH = 40
+"""Hypotheses that are followed."""
 _BORN = 0.6
 """Of the threshold of hopelessness: for what begins at a fix. There is so much of it at every fix that it
 would fill the beam, and what begins in earnest soon stands out."""
 _GOING_ON = (NOMINAL, NOMINAL + LEVEL_STRIDE * HURRIED, BURST, ADRIFT, EXIT)
-"""Hypotheses that are followed."""
+"""Labels of what goes on or ends."""
 _FEWEST_OF_PLACE = 5
 _PLACES = 5
 """A beam has room for hypotheses of so many places at least: those of one place differ in little, and would
