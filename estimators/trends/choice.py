@@ -32,6 +32,7 @@ from estimators.trends.trend import Trend
 _DEGREE = 2
 _FINEST = 1e-9
 """Least noise scale in units of the range of the values: finer ones are all called exact."""
+_LEAST_RATIO = np.finfo(np.float64).tiny
 _LEAST_READING = 1e-150
 """In the scale of the data; below, a reading is as good as zero, which has no logarithm."""
 _IMPOSSIBLE = 1e6
@@ -129,7 +130,8 @@ def _of_logarithms(y: FloatArray, fitted: FloatArray) -> tuple[FloatArray, Float
     """
     possible = (np.minimum(y * np.sign(fitted), np.abs(fitted)) > _LEAST_READING) & np.isfinite(fitted)
     size = np.where(possible, np.abs(y), 1.0)
-    ratio = np.where(possible, y / np.where(possible, fitted, 1.0), 1.0)
+    # A reading of 1e-93 where 1e231 was fitted has a quotient below the least number.
+    ratio = np.maximum(np.where(possible, y / np.where(possible, fitted, 1.0), 1.0), _LEAST_RATIO)
     residual = np.where(possible, size * np.log(ratio), _IMPOSSIBLE)
     return residual, 1.0 / size
 

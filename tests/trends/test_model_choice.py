@@ -119,6 +119,11 @@ def test_three_readings_far_apart_overflow_nothing() -> None:
     assert fit_trend(np.array([1.0, 1026.0, 0.0]), np.array([2.0, 0.0, 1.0]), model="auto")
 
 
+def test_readings_far_below_an_exponential_divide_to_no_zero() -> None:
+    y = np.array([1.0689072e-58, 1.0, 0.0, 0.0, 0.0, 1.892320036e-92])
+    assert fit_trend(np.arange(6.0), y, model="auto")
+
+
 @settings(max_examples=40, deadline=None)
 @given(st.lists(st.floats(-1e60, 1e60), min_size=2, max_size=6))
 def test_no_reading_however_small_breaks_the_choice(values: list[float]) -> None:
