@@ -18,7 +18,7 @@ from estimators.gnss.series.stream import locate_stream
 from estimators.notices import Notice, NoticeCode
 from estimators.options import RobustOptions
 from estimators.result import Estimate, NoFit, NoFitReason
-from estimators.trajectories.clean import clean_trajectory
+from estimators.trajectories.clean import clean_in_pieces, clean_trajectory
 from estimators.trajectories.live.answer import LiveRows, LiveTrack
 from estimators.trajectories.live.clean_live import clean_live
 from estimators.trajectories.methods.registry import TRACK_METHODS, TrackMethod
@@ -63,6 +63,7 @@ __all__ = [
     "TrendModel",
     "TrendTable",
     "__version__",
+    "clean_in_pieces",
     "clean_live",
     "clean_trajectory",
     "correct_ranges",

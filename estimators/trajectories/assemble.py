@@ -1,221 +1,164 @@
-"""From labels and a smoothed track in the plane to the answer on the caller's rows."""
+"""From a labelled track to the answer on the caller's rows, block by block, and what is said of the whole."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
-from estimators.arrays import CodeArray, FloatArray
+from estimators.arrays import FloatArray, IntArray
 from estimators.geodesy.ellipsoid import to_cartesian
-from estimators.notices import Notice, NoticeCode, notice
-from estimators.trajectories.distance import steps_of, travelled
-from estimators.trajectories.estimation import Measured
+from estimators.trajectories.course import Course, View
+from estimators.trajectories.distance import Journey, Way
+from estimators.trajectories.findings import Ledger
 from estimators.trajectories.headings import directions
-from estimators.trajectories.labelling.modes import (
-    ADRIFT,
-    BURST,
-    COLOUR_TIME_S,
-    ENTRY,
-    LEVEL_STRIDE,
-    REDRAW,
-    SPIKE,
-)
-from estimators.trajectories.methods.labelled import Labelled
-from estimators.trajectories.motion import is_moving, stretches
+from estimators.trajectories.labelling.modes import COLOUR_TIME_S
+from estimators.trajectories.motion import StretchGatherer
 from estimators.trajectories.options import TrackOptions
+from estimators.trajectories.pieces import TrackFacts, TrackPiece
 from estimators.trajectories.reasons import FixReason
 from estimators.trajectories.rows import Rows
-from estimators.trajectories.smoothing.height import smooth_height
+from estimators.trajectories.smoothing.height import estimate_heights, smooth_height, trusted_heights
 from estimators.trajectories.smoothing.solved import Solved, at_times
-from estimators.trajectories.smoothing.uncertainty import position_variance
-from estimators.trajectories.stale import runs_of
-from estimators.trajectories.track import Distance, Track, TrackNoise, TrackPoints
-
-_STALE_GATE = 9.21
-"""99 % of chi-square with two degrees of freedom."""
-_GAP_STEPS = 10.0
-_GAP_M = 100.0
-"""A gap is ten steps long or longer, and leaves the position that uncertain."""
-_FEW = 5
-_MOSTLY = 0.3
-_COLOURED = 0.5
-_SPARSE = 2.0
+from estimators.trajectories.survey import Survey, survey
+from estimators.trajectories.track import Distance, TrackNoise, TrackPoints
 
 
-def assemble(
-    rows: Rows,
-    measured: Measured,
-    labelled: Labelled,
-    solved: Solved,
-    method: str,
-    options: TrackOptions,
-    level: float,
-) -> Track:
-    """Make the answer.
+class Answer:
+    """The answer in the making.
 
     Parameters
     ----------
-    rows : Rows
-    measured : Measured
-        The rows that measure something.
-    labelled : Labelled
-        What the method says of them.
-    solved : Solved
+    course : Course
+    ledger : Ledger
+        What was counted before the track was labelled.
     method : str
     options : TrackOptions
     level : float
         Of intervals.
     """
-    places = np.ascontiguousarray(solved.states[:, :, 0])
-    variance = position_variance(rows.t, rows.fixes, solved, labelled.parameters.colour_m)
-    residual = np.hypot(*(rows.fixes - places).T)
-    gaps = _gaps(rows, labelled)
-    codes = _reasons(rows, solved, variance, residual, gaps)
-    inlier = np.isin(codes, (FixReason.ok, FixReason.gap_edge))
-    probability = np.zeros(rows.t.size)
-    probability[rows.measures] = labelled.probability
-    probability[rows.repeat] = np.where(inlier[rows.repeat], 1.0, 0.0)
-    # A duplicate is what its twin is, and so is its label; its reason stays.
-    twins = rows.twin
-    probability, inlier = probability[twins], inlier[twins]
-    usable = rows.codes[rows.order] != FixReason.invalid
-    inlier &= usable & (rows.codes[rows.order] != FixReason.out_of_order)
-    probability[~usable] = math.nan
-    residual[~usable] = math.nan
-    known = rows.codes[rows.order] != FixReason.ok
-    codes[known] = rows.codes[rows.order][known]
 
-    latitude, longitude = rows.plane.locate(places)
-    ground = _on_ground(latitude, longitude)
-    sigma = np.sqrt(variance)
-    moving = is_moving(rows.t, places, sigma)
-    if rows.shift.any():
-        # What stands beside a time is the place at that time, though the clock was off.
-        solved = at_times(solved, rows.t, rows.t - rows.shift)
-        variance = np.interp(rows.t - rows.shift, rows.t, variance)
-        latitude, longitude = rows.plane.locate(solved.states[:, :, 0])
-    speed, heading, speed_sigma, heading_sigma = directions(rows.plane, latitude, longitude, solved)
-    height, up = None, np.full(rows.t.size, math.nan)
-    if rows.height is not None:
-        height, up = smooth_height(rows.t, rows.height, inlier)
-    covariance = np.zeros((rows.t.size, 3, 3))
-    covariance[:, 0, 0] = covariance[:, 1, 1] = variance
-    covariance[:, 2, 2] = up
+    def __init__(
+        self, course: Course, ledger: Ledger, method: str, options: TrackOptions, level: float
+    ) -> None:
+        self._course, self._rows = course, course.rows
+        self._ledger, self._method, self._options, self._level = ledger, method, options, level
+        self._survey: Survey = survey(course)
+        self._journey, self._raw = Journey(), Way(0.0)
+        self._gatherer = StretchGatherer(self._rows.t, self._survey.moving)
 
-    parameters = labelled.parameters
-    unit = 1.0 if rows.reported is None else float(np.median(rows.reported))
-    raw = rows.measures
-    reasons, flags = rows.codes.copy(), np.zeros(rows.codes.size, dtype=np.bool_)
-    reasons[rows.order], flags[rows.order] = codes, inlier
-    return Track(
-        method=method,
-        time=rows.time,
-        points=TrackPoints(
-            flags,
-            _spread(rows, probability),
-            _spread(rows, residual),
-            reasons,
-        ),
-        lat_deg=_spread(rows, latitude),
-        lon_deg=_spread(rows, longitude),
-        height_m=None if height is None else _spread(rows, height),
-        covariance_enu_m2=_spread(rows, covariance),
-        speed_mps=_spread(rows, speed),
-        speed_sigma_mps=_spread(rows, speed_sigma),
-        heading_deg=_spread(rows, heading),
-        heading_sigma_deg=_spread(rows, heading_sigma),
-        noise=TrackNoise(
-            parameters.sigma * unit,
-            parameters.colour_m,
-            COLOUR_TIME_S,
-            parameters.manoeuvre,
-            "estimated" if options.sigma_m is None else "given",
-        ),
-        distance=Distance(
-            float(np.sum(steps_of(_on_ground(rows.lat_deg[rows.order][raw], rows.lon_deg[rows.order][raw])))),
-            travelled(ground, sigma, level),
-        ),
-        stretches=stretches(rows.t, ground, sigma, speed, moving, rows.order, level),
-        level=level,
-        notices=_notices(rows, measured, labelled, codes, gaps),
-        input_lat_deg=rows.lat_deg,
-        input_lon_deg=rows.lon_deg,
-    )
+    def blocks(self) -> Iterator[TrackPiece]:
+        """Columns of rows with a time, in its order; then of those without."""
+        rows = self._rows
+        used = model = None
+        if rows.height is not None:
+            used = trusted_heights(rows.height, self._survey.inlier)
+            model = estimate_heights(rows.t, rows.height, used)
+        for part in self._course.parts():
+            view = self._course.view(part)
+            solved, variance = view.solved, view.variance
+            latitude, longitude = rows.plane.locate(view.places)
+            ground, sigma = _on_ground(latitude, longitude), np.sqrt(variance)
+            self._travel(part, ground, sigma)
+            if rows.shift is not None and rows.shift[part].any():
+                # What stands beside a time is the place at that time, though the clock was off.
+                solved, variance = self._shifted(view, rows.shift[part])
+                latitude, longitude = rows.plane.locate(solved.states[:, :, 0])
+            speed, heading, speed_sigma, heading_sigma = directions(rows.plane, latitude, longitude, solved)
+            self._gatherer.add(part.start, ground, sigma, speed)
+            height, up = None, np.full(speed.size, math.nan)
+            if rows.height is not None and used is not None and model is not None:
+                height, up = smooth_height(rows.t, rows.height, used, model, part)
+            yield TrackPiece(
+                rows.inputs(part),
+                self._points(view),
+                latitude,
+                longitude,
+                height,
+                variance,
+                up,
+                speed,
+                speed_sigma,
+                heading,
+                heading_sigma,
+            )
+        if rows.order is not None and rows.order.size < rows.codes.size:
+            yield _without_time(rows)
 
+    def facts(self) -> TrackFacts:
+        """Say what holds of the whole, once all blocks have been made."""
+        rows, parameters = self._rows, self._course.labelled.parameters
+        return TrackFacts(
+            method=self._method,
+            rows=int(rows.codes.size),
+            inliers=int(np.count_nonzero(self._survey.inlier)),
+            noise=TrackNoise(
+                parameters.sigma * self._ledger.unit,
+                parameters.colour_m,
+                COLOUR_TIME_S,
+                parameters.manoeuvre,
+                "estimated" if self._options.sigma_m is None else "given",
+            ),
+            distance=Distance(self._raw.length_m, self._journey.travelled(rows.t.size, self._level)),
+            stretches=self._gatherer.stretches(rows.inputs, self._level),
+            level=self._level,
+            notices=self._ledger.notices(parameters, self._survey, rows),
+        )
 
-def _reasons(
-    rows: Rows, solved: Solved, variance: FloatArray, residual: FloatArray, gaps: list[int]
-) -> CodeArray:
-    """Reasons of the rows in order of time, as far as labels say them."""
-    codes = np.zeros(rows.t.size, dtype=np.uint8)
-    kind = solved.labels % LEVEL_STRIDE
-    codes[kind == SPIKE] = FixReason.spike
-    codes[np.isin(kind, (ENTRY, BURST, REDRAW, ADRIFT))] = FixReason.burst
-    off = residual**2 > _STALE_GATE * (variance + solved.variance)
-    for first, stop in runs_of(rows.repeat):
-        if off[first:stop].any():
-            codes[first:stop] = FixReason.stale
-    for place in gaps:
-        for edge in (place, place + 1):
-            if codes[edge] == FixReason.ok:
-                codes[edge] = FixReason.gap_edge
-    return codes
+    def _travel(self, part: slice, ground: FloatArray, sigma: FloatArray) -> None:
+        self._journey.add(ground, sigma)
+        raw = self._rows.inputs(part)[self._rows.measures[part]]
+        self._raw.add(_on_ground(self._rows.lat_deg[raw], self._rows.lon_deg[raw]), np.zeros(raw.size))
 
+    def _points(self, view: View) -> TrackPoints:
+        known = self._rows.codes[self._rows.inputs(view.part)]
+        usable = known != FixReason.invalid
+        residual, probability = view.residual.copy(), self._probability(view.part)
+        residual[~usable] = math.nan
+        probability[~usable] = math.nan
+        return TrackPoints(
+            self._survey.inlier[view.part], probability, residual, self._survey.codes[view.part]
+        )
 
-def _gaps(rows: Rows, labelled: Labelled) -> list[int]:
-    """Places after which there is a gap."""
-    steps = np.diff(rows.t)
-    if steps.size < _FEW:
-        return []
-    hidden = np.sqrt(labelled.parameters.manoeuvre * steps**3 / 3.0)
-    typical = float(np.median(steps))
-    return list(np.flatnonzero((steps > _GAP_STEPS * typical) & (hidden > _GAP_M)).tolist())
+    def _probability(self, part: slice) -> FloatArray:
+        """Of rows to be good; of a duplicate, that of its twin, which stands before it."""
+        rows, labelled = self._rows, self._course.labelled
+        own = slice(*np.searchsorted(rows.duplicates, [part.start, part.stop]).tolist())
+        duplicates, twins = rows.duplicates[own], rows.twins[own]
+        wide = slice(min(part.start, int(twins[0])) if twins.size else part.start, part.stop)
+        measures = rows.measures[wide]
+        probability = np.where(rows.repeat[wide] & self._survey.repeats_good[wide], 1.0, 0.0)
+        before = self._ledger.measured.before_row(wide.start)
+        probability[measures] = labelled.probability[before : before + np.count_nonzero(measures)]
+        probability[duplicates - wide.start] = probability[twins - wide.start]
+        return probability[part.start - wide.start :]
+
+    def _shifted(self, view: View, shift: FloatArray) -> tuple[Solved, FloatArray]:
+        """States and variances where the clock of each row, right or wrong, says."""
+        t = self._rows.t
+        states, covariances = view.solved.states.copy(), view.solved.covariances.copy()
+        variance = view.variance.copy()
+        for by in np.unique(shift[shift != 0.0]).tolist():
+            off = np.flatnonzero(shift == by)
+            when = t[view.part][off] - by
+            first, stop = np.searchsorted(t, [when[0], when[-1]], side="right").tolist()
+            there = self._course.view(slice(max(first - 1, 0), min(max(stop + 1, first), t.size)))
+            states[off], covariances[off] = at_times(there.solved, t[there.part], when)
+            variance[off] = np.interp(when, t[there.part], there.variance)
+        return Solved(view.solved.labels, view.solved.variance, states, covariances), variance
 
 
 def _on_ground(latitude: FloatArray, longitude: FloatArray) -> FloatArray:
     return to_cartesian(np.column_stack([latitude, longitude, np.zeros(latitude.size)]))
 
 
-def _spread(rows: Rows, values: FloatArray) -> FloatArray:
-    """Put values in order of time back on the caller's rows; NaN where there is no time."""
-    out = np.full((rows.codes.size, *values.shape[1:]), math.nan)
-    out[rows.order] = values
-    return out
-
-
-def _notices(
-    rows: Rows, measured: Measured, labelled: Labelled, codes: CodeArray, gaps: list[int]
-) -> tuple[Notice, ...]:
-    """Say what is worth knowing."""
-    found = []
-    parameters = labelled.parameters
-    m = measured.t.size
-    bad = int(np.isin(codes, (FixReason.spike, FixReason.burst, FixReason.stale)).sum())
-    sigma = parameters.sigma * (1.0 if measured.reported is None else float(np.median(measured.reported)))
-    counts = np.bincount(codes, minlength=len(FixReason))
-    if m < _FEW:
-        found.append(notice(NoticeCode.few_fixes, fixes=m))
-    if bad > _MOSTLY * codes.size:
-        found.append(notice(NoticeCode.mostly_faulty, share=round(bad / codes.size, 3)))
-    # Where most fixes count as faulty, errors that last pass for the motion.
-    if m >= _FEW and (parameters.colour_m > _COLOURED * sigma or bad > _MOSTLY * codes.size):
-        found.append(notice(NoticeCode.drift_unobservable, coloured_m=parameters.colour_m))
-    if m >= _FEW:
-        step = float(np.median(np.diff(measured.t)))
-        hidden = math.sqrt(parameters.manoeuvre * step**3 / 3.0)
-        if hidden > _SPARSE * sigma:
-            found.append(notice(NoticeCode.sampling_too_sparse, step_s=step, hidden_m=hidden))
-    if counts[FixReason.stale]:
-        found.append(notice(NoticeCode.stale_positions, rows=int(counts[FixReason.stale])))
-    shifted = int(np.count_nonzero(rows.codes == FixReason.out_of_order))
-    if shifted:
-        found.append(notice(NoticeCode.clock_jumped, rows=shifted))
-    if gaps:
-        found.append(notice(NoticeCode.long_gaps, gaps=len(gaps)))
-    invalid = int(np.count_nonzero(rows.codes == FixReason.invalid))
-    if invalid:
-        found.append(notice(NoticeCode.invalid_rows, rows=invalid))
-    if not rows.was_sorted:
-        found.append(notice(NoticeCode.unsorted_times))
-    return tuple(found)
+def _without_time(rows: Rows) -> TrackPiece:
+    """Rows that have no place in the track."""
+    timed = np.zeros(rows.codes.size, dtype=np.bool_)
+    timed[rows.order] = True
+    others: IntArray = np.flatnonzero(~timed)
+    nothing: FloatArray = np.full(others.size, math.nan)
+    points = TrackPoints(np.zeros(others.size, dtype=np.bool_), nothing, nothing, rows.codes[others])
+    height = None if rows.height is None else nothing
+    return TrackPiece(others, points, nothing, nothing, height, *([nothing] * 6))

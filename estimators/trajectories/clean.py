@@ -1,4 +1,4 @@
-"""``clean_trajectory``: from a caller's rows to a :class:`Track`."""
+"""``clean_trajectory`` and ``clean_in_pieces``: from a caller's rows to a :class:`Track` or pieces of one."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ import numpy as np
 
 from estimators.arrays import ArrayLike, FloatArray, InputError, Reason
 from estimators.result import NoFit, NoFitReason, Points
-from estimators.trajectories.assemble import assemble
 from estimators.trajectories.methods.registry import TRACK_METHODS
 from estimators.trajectories.options import TrackOptions
+from estimators.trajectories.pieces import TrackPieces
 from estimators.trajectories.reasons import FixReason
 from estimators.trajectories.rows import Rows, read_rows
-from estimators.trajectories.solve import measured_of, smooth_rows
+from estimators.trajectories.smoothing.blocks import BLOCK
+from estimators.trajectories.solve import solve, whole
 from estimators.trajectories.track import Track
 
 
@@ -82,19 +83,80 @@ def clean_trajectory(
     >>> track.points.reason[29:32]
     ['ok', 'spike', 'ok']
     """
+    pieces = clean_in_pieces(
+        t_s,
+        lat_deg,
+        lon_deg,
+        height_m=height_m,
+        accuracy_m=accuracy_m,
+        speed_mps=speed_mps,
+        bearing_deg=bearing_deg,
+        method=method,
+        level=level,
+        options=options,
+    )
+    return pieces if isinstance(pieces, NoFit) else whole(pieces)
+
+
+def clean_in_pieces(
+    t_s: ArrayLike,
+    lat_deg: ArrayLike,
+    lon_deg: ArrayLike,
+    *,
+    height_m: ArrayLike | None = None,
+    accuracy_m: ArrayLike | None = None,
+    speed_mps: ArrayLike | None = None,
+    bearing_deg: ArrayLike | None = None,
+    method: str = "auto",
+    level: float = 0.95,
+    options: TrackOptions | None = None,
+    piece_rows: int = BLOCK,
+) -> TrackPieces | NoFit:
+    """Clean a track whose answer need not be held as a whole.
+
+    The pieces on end are the answer of :func:`clean_trajectory`, to the bit; what is kept is about 50 bytes
+    per row beside the columns that come in, and 24 more where there are velocities.
+
+    Parameters
+    ----------
+    t_s, lat_deg, lon_deg, height_m, accuracy_m, speed_mps, bearing_deg, method, level, options
+        As for :func:`clean_trajectory`. The columns must not change before the last piece has been taken.
+    piece_rows : int
+        Rows of a piece (default 65,536); the last is shorter.
+
+    Returns
+    -------
+    TrackPieces or NoFit
+        Pieces in order of time, each with the input rows that it is about.
+
+    Raises
+    ------
+    InputError
+        As :func:`clean_trajectory`, and if ``piece_rows`` is not a positive integer.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(100.0)
+    >>> pieces = clean_in_pieces(t, 48.0 + 1e-4 * t, np.full(100, 11.0), piece_rows=40)
+    >>> [len(piece) for piece in pieces]
+    [40, 40, 20]
+    >>> pieces.facts().inliers
+    100
+    """
     if method not in TRACK_METHODS:
         raise InputError("method", f"unknown method {method!r}; choose one of {', '.join(TRACK_METHODS)}")
     if isinstance(level, bool) or not 0.0 < level < 1.0:
         raise InputError("level", "must lie between 0 and 1, both excluded")
+    if isinstance(piece_rows, bool) or not isinstance(piece_rows, int) or piece_rows < 1:
+        raise InputError("piece_rows", "must be a positive whole number of rows")
     options = options or TrackOptions()
     rows = read_rows(t_s, lat_deg, lon_deg, height_m, accuracy_m, speed_mps, bearing_deg)
     refused = _refuse(rows)
     if refused is not None:
         return refused
-    measured = measured_of(rows)
-    labelled = TRACK_METHODS[method].labeller(measured, options)
-    solved = smooth_rows(rows, labelled)
-    return assemble(rows, measured, labelled, solved, method, options, level)
+    labeller = TRACK_METHODS[method].labeller
+    return solve(rows, lambda measured: labeller(measured, options), method, options, level, piece_rows)
 
 
 def _refuse(rows: Rows) -> NoFit | None:

@@ -17,13 +17,13 @@ from estimators.arrays import FloatArray
 from estimators.kernels import kernel, ro
 from estimators.result import Estimate
 
-_REACH = 4.0
+REACH = 4.0
 """Standard deviations of a position from one vertex to the next."""
 
 
-@kernel(types.float64(ro(types.float64, 2), ro(types.float64)))
-def walk(places: FloatArray, reach: FloatArray) -> float:
-    """Length of the path over places that are farther apart than a reach.
+@kernel(types.void(ro(types.float64, 2), ro(types.float64), types.float64[::1]))
+def walk_on(places: FloatArray, reach: FloatArray, course: FloatArray) -> None:
+    """Go on along places that are farther apart than a reach.
 
     Parameters
     ----------
@@ -31,53 +31,78 @@ def walk(places: FloatArray, reach: FloatArray) -> float:
         Cartesian, metres.
     reach : ndarray, shape (m,)
         Metres.
-
-    Returns
-    -------
-    float
-        Metres.
+    course : ndarray, shape (4,)
+        In and out: length so far, and the last vertex.
     """
-    total = 0.0
-    last = 0
-    for k in range(1, places.shape[0]):
+    for k in range(places.shape[0]):
         squared = 0.0
         for axis in range(3):
-            squared += (places[k, axis] - places[last, axis]) ** 2
+            squared += (places[k, axis] - course[1 + axis]) ** 2
         if squared >= reach[k] * reach[k] and squared > 0.0:
-            total += math.sqrt(squared)
-            last = k
-    return float(total)
+            course[0] += math.sqrt(squared)
+            for axis in range(3):
+                course[1 + axis] = places[k, axis]
 
 
-def length_of(places: FloatArray, sigma: FloatArray) -> float:
-    """Metres along smoothed places, shape (m, 3), whose standard deviations per axis are ``sigma``."""
-    return walk(places, _REACH * sigma)
-
-
-def travelled(places: FloatArray, sigma: FloatArray, level: float) -> Estimate:
-    """Distance along the smoothed track.
-
-    Its error is that of the two ends, and of the scale: half of what the path gains when it is walked in
-    steps a quarter as long.
+class Way:
+    """Length of a path whose places come piece by piece.
 
     Parameters
     ----------
-    places : ndarray, shape (m, 3)
-        Smoothed, Cartesian, metres.
-    sigma : ndarray, shape (m,)
-        Their standard deviations per axis.
-    level : float
-        Of the interval, which is normal.
+    reach : float
+        From one vertex to the next, in standard deviations of a position; 0: every place is a vertex.
+
+    Examples
+    --------
+    >>> way = Way(0.0)
+    >>> way.add(np.zeros((1, 3)), np.ones(1))
+    >>> way.add(np.array([[3.0, 4.0, 0.0]]), np.ones(1))
+    >>> way.length_m
+    5.0
     """
-    if sigma.size < 2:
-        return Estimate(0.0, 0.0, 0.0, 0.0)
-    total = length_of(places, sigma)
-    wiggles = walk(places, sigma) - total
-    stderr = math.sqrt(float(sigma[0] ** 2 + sigma[-1] ** 2) + 0.25 * wiggles * wiggles)
-    margin = float(ndtri(0.5 + 0.5 * level)) * stderr
-    return Estimate(total, stderr, max(0.0, total - margin), total + margin)
+
+    def __init__(self, reach: float = REACH) -> None:
+        self._reach = reach
+        self._course = np.zeros(4)
+        self._is_begun = False
+
+    @property
+    def length_m(self) -> float:
+        """Metres so far."""
+        return float(self._course[0])
+
+    def add(self, places: FloatArray, sigma: FloatArray) -> None:
+        """Go on along places, shape (m, 3), of standard deviations per axis, shape (m,)."""
+        if not self._is_begun and len(places):
+            self._course[1:] = places[0]
+            self._is_begun = True
+        walk_on(np.ascontiguousarray(places), np.ascontiguousarray(self._reach * sigma), self._course)
 
 
-def steps_of(places: FloatArray) -> FloatArray:
-    """Metres from each place to the next, shape (m - 1,)."""
-    return np.asarray(np.sqrt(np.sum(np.diff(places, axis=0) ** 2, axis=1)))
+class Journey:
+    """Distance along the smoothed track, whose rows come piece by piece.
+
+    Its error is that of the two ends, and of the scale: half of what the path gains when it is walked in
+    steps a quarter as long.
+    """
+
+    def __init__(self) -> None:
+        self._way, self._finer = Way(), Way(1.0)
+        self._ends = (math.nan, math.nan)
+
+    def add(self, places: FloatArray, sigma: FloatArray) -> None:
+        """Go on along places, shape (m, 3), of standard deviations per axis, shape (m,)."""
+        self._way.add(places, sigma)
+        self._finer.add(places, sigma)
+        first = float(sigma[0]) if math.isnan(self._ends[0]) else self._ends[0]
+        self._ends = first, float(sigma[-1])
+
+    def travelled(self, rows: int, level: float) -> Estimate:
+        """Length with a normal interval of a level."""
+        if rows < 2:
+            return Estimate(0.0, 0.0, 0.0, 0.0)
+        total = self._way.length_m
+        wiggles = self._finer.length_m - total
+        stderr = math.sqrt(self._ends[0] ** 2 + self._ends[1] ** 2 + 0.25 * wiggles * wiggles)
+        margin = float(ndtri(0.5 + 0.5 * level)) * stderr
+        return Estimate(total, stderr, max(0.0, total - margin), total + margin)

@@ -14,7 +14,7 @@ import numpy as np
 
 from estimators.arrays import BoolArray, CodeArray, FloatArray
 from estimators.trajectories.climbing import climb, mean_square
-from estimators.trajectories.labelling.beam import HOPELESS, WIDTH, label_track
+from estimators.trajectories.labelling.beam import HOPELESS, WIDTH
 from estimators.trajectories.labelling.evidence import judge_labels
 from estimators.trajectories.labelling.modes import (
     ADRIFT,
@@ -26,6 +26,7 @@ from estimators.trajectories.labelling.modes import (
     SPIKE,
     WIDE,
 )
+from estimators.trajectories.labelling.passage import Passage
 from estimators.trajectories.parameters import Rates, TrackParameters
 from estimators.trajectories.spans import PRIOR_LOG, PRIOR_SPREAD, start_from_spans
 from estimators.trajectories.stale import rounding_of
@@ -74,6 +75,11 @@ class Measured:
     reported: FloatArray | None
     velocity: FloatArray | None = None
     velocity_variance: FloatArray | None = None
+
+    @property
+    def size(self) -> int:
+        """Number of fixes."""
+        return int(self.t.size)
 
     def velocities(self) -> tuple[FloatArray, FloatArray]:
         """Velocities and their variances; infinite ones where there are none."""
@@ -133,23 +139,10 @@ def label(
         Log likelihood.
     """
     n = measured.t.size
-    labels, probability = np.zeros(n, dtype=np.uint8), np.ones(n)
-    evidence = label_track(
-        measured.t,
-        measured.fixes,
-        measured.variance(parameters),
-        *measured.velocities(),
-        parameters.colour_m,
-        parameters.manoeuvre,
-        parameters.rates.as_array(),
-        lag,
-        width,
-        hopeless,
-        top_speed,
-        labels,
-        probability,
-    )
-    return labels, probability, evidence
+    passage = Passage(n, parameters, lag, width, hopeless, top_speed)
+    variance = measured.variance(parameters)
+    passage.follow(measured.t, measured.fixes, variance, *measured.velocities(), is_last=True)
+    return passage.labels, passage.probability if lag else np.ones(n), passage.evidence
 
 
 def judge(measured: Measured, parameters: TrackParameters, labels: CodeArray) -> float:

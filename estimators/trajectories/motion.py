@@ -7,13 +7,14 @@ smoothed track by less than people walk.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
 from estimators.arrays import BoolArray, FloatArray, IntArray
 from estimators.regression.theil_sen import theil_sen, theil_sen_interval
 from estimators.result import Estimate
-from estimators.trajectories.distance import length_of
+from estimators.trajectories.distance import Way
 from estimators.trajectories.labelling.modes import COLOUR_TIME_S
 from estimators.trajectories.stale import runs_of
 from estimators.trajectories.track import Stretch
@@ -24,20 +25,31 @@ _NOISE_MPS = 0.1
 _LEAST_SPAN_S, _MOST_SPAN_S = 5.0, 60.0
 _SHORTEST_S = 5.0
 _FEWEST = 4
+_SPEEDS = 1 << 16
+"""The median speed of a stretch is taken from at most so many rows, evenly spread."""
 _TREND_FIXES = 2000
 """A trend of speed is taken from at most so many fixes, evenly spread: Theil-Sen needs no more."""
 
 
-def is_moving(t: FloatArray, places: FloatArray, sigma: FloatArray) -> BoolArray:
-    """Mark rows where the track moves.
+def half_span(sigma: FloatArray) -> float:
+    """Half of the span, in seconds, over which displacements count, given standard deviations per axis."""
+    wander = float(np.median(sigma))
+    return 0.5 * min(_MOST_SPAN_S, max(2.0 * _LEAST_SPAN_S, math.sqrt(2.0) * wander / _NOISE_MPS))
+
+
+def is_displaced(t: FloatArray, places: FloatArray, sigma: FloatArray, half: float) -> BoolArray:
+    """Mark rows where the track gets somewhere within a span.
 
     Parameters
     ----------
     t : ndarray, shape (m,)
+        With the rows of half a span, and one at least, before and after those of interest.
     places : ndarray, shape (m, 2)
         Smoothed, metres.
     sigma : ndarray, shape (m,)
         Their standard deviations per axis.
+    half : float
+        Of the span, seconds.
 
     Returns
     -------
@@ -46,20 +58,18 @@ def is_moving(t: FloatArray, places: FloatArray, sigma: FloatArray) -> BoolArray
     m = t.size
     if m < 2:
         return np.zeros(m, dtype=np.bool_)
-    wander = float(np.median(sigma))
-    half = 0.5 * min(_MOST_SPAN_S, max(2.0 * _LEAST_SPAN_S, math.sqrt(2.0) * wander / _NOISE_MPS))
     rows = np.arange(m)
     before = np.minimum(np.searchsorted(t, t - half), np.maximum(rows - 1, 0))
     after = np.maximum(np.searchsorted(t, t + half, side="right") - 1, np.minimum(rows + 1, m - 1))
     gone = np.hypot(*(places[after] - places[before]).T)
     span = np.maximum(t[after] - t[before], 1e-9)
     noise = math.sqrt(2.0) * np.maximum(sigma[after], sigma[before]) / span
-    moving = gone / span > np.maximum(SLOW_MPS, 2.0 * noise)
-    return _without_short(t, moving, max(_SHORTEST_S, 0.5 * half))
+    return np.asarray(gone / span > np.maximum(SLOW_MPS, 2.0 * noise))
 
 
-def _without_short(t: FloatArray, moving: BoolArray, shortest_s: float) -> BoolArray:
-    """Give stretches shorter than a duration to what is around them, stops first."""
+def without_short(t: FloatArray, moving: BoolArray, half: float) -> BoolArray:
+    """Give stretches that are short beside the span to what is around them, stops first."""
+    shortest_s = max(_SHORTEST_S, 0.5 * half)
     out = moving.copy()
     for kind in (False, True):
         for first, stop in runs_of(out == kind):
@@ -69,49 +79,79 @@ def _without_short(t: FloatArray, moving: BoolArray, shortest_s: float) -> BoolA
     return out
 
 
-def stretches(
-    t: FloatArray,
-    ground: FloatArray,
-    sigma: FloatArray,
-    speed: FloatArray,
-    moving: BoolArray,
-    order: IntArray,
-    level: float,
-) -> tuple[Stretch, ...]:
-    """Stretches of motion in order of time.
+class StretchGatherer:
+    """Stretches of motion of a track whose rows come piece by piece, in order of time.
 
     Parameters
     ----------
-    t, sigma, speed : ndarray, shape (m,)
-    ground : ndarray, shape (m, 3)
-        Smoothed places, Cartesian.
+    t : ndarray, shape (m,)
     moving : ndarray of bool, shape (m,)
-    order : ndarray of int64, shape (m,)
-        Input rows in order of time.
-    level : float
-        Of the interval of the trend.
     """
-    found = []
-    for kind in (False, True):
-        for first, stop in runs_of(moving == kind):
-            found.append((first, stop, kind))
-    answer = []
-    for first, stop, kind in sorted(found):
-        # A stretch ends where the next begins, so that durations add up to that of the track.
-        end = min(stop + 1, t.size)
-        length = length_of(np.ascontiguousarray(ground[first:end]), sigma[first:end])
-        answer.append(
-            Stretch(
-                kind="moving" if kind else "stopped",
-                first=int(order[first]),
-                last=int(order[stop - 1]),
-                duration_s=float(t[end - 1] - t[first]),
-                distance_m=length if kind else 0.0,
-                speed_mps=float(np.median(speed[first:stop])),
-                acceleration_mps2=_trend(t[first:stop], speed[first:stop], level) if kind else None,
+
+    def __init__(self, t: FloatArray, moving: BoolArray) -> None:
+        self._t = t
+        runs = [(first, stop, kind) for kind in (False, True) for first, stop in runs_of(moving == kind)]
+        self._runs = sorted(runs)
+        self._ways = [Way() for _ in self._runs]
+        self._speeds: list[list[FloatArray]] = [[] for _ in self._runs]
+        self._place = 0
+
+    def add(self, at: int, ground: FloatArray, sigma: FloatArray, speed: FloatArray) -> None:
+        """Take in rows.
+
+        Parameters
+        ----------
+        at : int
+            Place of the first of them.
+        ground : ndarray, shape (k, 3)
+            Smoothed places, Cartesian.
+        sigma, speed : ndarray, shape (k,)
+        """
+        behind = at + speed.size
+        while self._place < len(self._runs):
+            first, stop, kind = self._runs[self._place]
+            own = slice(max(first - at, 0), min(stop - at, speed.size))
+            if own.stop > own.start:
+                self._speeds[self._place].append(_evenly(speed[own], first, stop, at + own.start))
+            # A stretch ends where the next begins, so that durations add up to that of the track.
+            end = min(stop + 1, self._t.size)
+            walked = slice(max(first - at, 0), min(end - at, speed.size))
+            if kind:
+                self._ways[self._place].add(ground[walked], sigma[walked])
+            if behind < end:
+                return
+            self._place += 1
+
+    def stretches(self, rows_of: Callable[[slice], IntArray], level: float) -> tuple[Stretch, ...]:
+        """Give them in order of time, by input rows as a function finds them, with intervals of a level."""
+        answer = []
+        for (first, stop, kind), way, parts in zip(self._runs, self._ways, self._speeds, strict=True):
+            end = min(stop + 1, self._t.size)
+            speed = np.concatenate(parts)
+            times = self._t[first:stop][:: _stride(first, stop)]
+            answer.append(
+                Stretch(
+                    kind="moving" if kind else "stopped",
+                    first=int(rows_of(slice(first, first + 1))[0]),
+                    last=int(rows_of(slice(stop - 1, stop))[0]),
+                    duration_s=float(self._t[end - 1] - self._t[first]),
+                    distance_m=way.length_m if kind else 0.0,
+                    speed_mps=float(np.median(speed)),
+                    acceleration_mps2=_trend(times, speed, level) if kind else None,
+                )
             )
-        )
-    return tuple(answer)
+        return tuple(answer)
+
+
+def _stride(first: int, stop: int) -> int:
+    """Every how many rows the speed of a stretch is looked at."""
+    return -(-(stop - first) // _SPEEDS)
+
+
+def _evenly(speed: FloatArray, first: int, stop: int, at: int) -> FloatArray:
+    """Speeds of the rows that are looked at, of those of a stretch from ``at`` on."""
+    stride = _stride(first, stop)
+    return speed[(first - at) % stride :: stride].copy()
 
 
 def _trend(t: FloatArray, speed: FloatArray, level: float) -> Estimate | None:

@@ -12,22 +12,26 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from estimators.arrays import ArrayLike, BoolArray, CodeArray, FloatArray, InputError, IntArray, as_vector
+from estimators.arrays import ArrayLike, BoolArray, CodeArray, FloatArray, InputError, IntArray
 from estimators.geodesy.ellipsoid import to_cartesian, to_geodetic
 from estimators.geodesy.plane import Plane
 from estimators.time_axis import TimeAxis, as_moments, as_times
 from estimators.trajectories.clock import clock_shifts
+from estimators.trajectories.columns import column_of, heights_of, on_earth, reported_radii, velocities_of
+from estimators.trajectories.ordering import find_twins, order_by_time
+from estimators.trajectories.projected import Projected
 from estimators.trajectories.reasons import FixReason
 from estimators.trajectories.stale import repeats
-from estimators.trajectories.velocities import velocities
+from estimators.trajectories.velocities import trusted_velocities
 
 LONGEST_S = 1e10
 """Tracks span at most three hundred years; longer ones are in another unit."""
 _NULL_ISLAND_DEG = 1e-7
 _ELSEWHERE_M = 1e3
-_ACCURACY_M = (0.1, 1e4)
-HEIGHT_M = 1e7
-_FASTEST_MPS = 1e4
+_MANY = 1 << 17
+"""The centre of a track of more rows is that of so many of them."""
+_AT_ONCE = 1 << 16
+"""Rows for which intermediate results are held."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,26 +47,28 @@ class Rows:
         A :class:`FixReason` per input row, as far as it is known.
     lat_deg, lon_deg : ndarray, shape (n,)
         As they came, longitudes wrapped; NaN where invalid.
-    order : ndarray of int64, shape (m,)
-        Input rows in order of time.
+    order : ndarray of int64, shape (m,), or None
+        Input rows in order of time; None: they came in it, each with a time.
     t : ndarray, shape (m,)
         Seconds since the first, ascending; clocks that were off put right.
-    fixes : ndarray, shape (m, 2)
-        East and north in the plane, metres; 0 where a row has no place.
+    fixes : Projected
+        East and north in the plane, metres, of any rows; 0 where a row has no place.
     measures : ndarray of bool, shape (m,)
         Whether a row measures something: neither invalid nor a duplicate nor a repeat.
     repeat : ndarray of bool, shape (m,)
         Rows that repeat the position before them.
-    twin : ndarray of int64, shape (m,)
-        Place, in order of time, of the row that a duplicate repeats; its own for others.
-    shift : ndarray, shape (m,)
-        Seconds that were added to put a clock right; mostly 0.
+    duplicates, twins : ndarray of int64, shape (d,)
+        Places, in order of time, of the duplicates and of the rows that they repeat.
+    shift : ndarray, shape (m,), or None
+        Seconds that were added to put a clock right; None: none.
     reported : ndarray, shape (m,), or None
         Radii that hold 68 %.
     height : ndarray, shape (m,), or None
         NaN where there is none.
     velocity : ndarray, shape (m, 2), or None
-        As reported, along the plane's axes, m/s; NaN where there is none.
+        As reported, along the plane's axes, m/s; None if there is none to be trusted.
+    velocity_variance : ndarray, shape (m,), or None
+        Per axis; infinite where a velocity is not to be used.
     plane : Plane
     was_sorted : bool
     """
@@ -72,18 +78,26 @@ class Rows:
     codes: CodeArray
     lat_deg: FloatArray
     lon_deg: FloatArray
-    order: IntArray
+    order: IntArray | None
     t: FloatArray
-    fixes: FloatArray
+    fixes: Projected
     measures: BoolArray
     repeat: BoolArray
-    twin: IntArray
-    shift: FloatArray
+    duplicates: IntArray
+    twins: IntArray
+    shift: FloatArray | None
     reported: FloatArray | None
     height: FloatArray | None
     velocity: FloatArray | None
+    velocity_variance: FloatArray | None
     plane: Plane
     was_sorted: bool
+
+    def inputs(self, part: slice) -> IntArray:
+        """Input rows of a part of the rows in order of time."""
+        if self.order is None:
+            return np.arange(*part.indices(self.t.size), dtype=np.int64)
+        return self.order[part]
 
 
 def read_rows(
@@ -101,52 +115,66 @@ def read_rows(
     latitude = column_of(lat_deg, "lat_deg", n)
     longitude = column_of(lon_deg, "lon_deg", n)
     usable = on_earth(latitude, longitude)
-    longitude = np.where(np.abs(longitude) > 180.0, (longitude + 180.0) % 360.0 - 180.0, longitude)
-    timed = np.isfinite(internal)
-    with np.errstate(invalid="ignore"):
-        if timed.any() and np.ptp(internal[timed]) > LONGEST_S:
-            raise InputError("t_s", "the times span more than 300 years; give seconds, or points in time")
+    if (longitude > 180.0).any() or (longitude < -180.0).any():
+        longitude = np.where(np.abs(longitude) > 180.0, (longitude + 180.0) % 360.0 - 180.0, longitude)
+    filed = None if np.isfinite(internal).all() else np.flatnonzero(np.isfinite(internal))
+    moved = internal if filed is None else internal[filed]
+    if moved.size and float(moved.max() - moved.min()) > LONGEST_S:
+        raise InputError("t_s", "the times span more than 300 years; give seconds, or points in time")
+    shift: FloatArray | None = clock_shifts(moved)
+    if shift is not None and shift.any():
+        moved = moved + shift
+    else:
+        shift = None
+    sorting = order_by_time(moved, latitude, longitude, filed)
+    order = filed if sorting is None else sorting if filed is None else filed[sorting]
     plane = Plane(0.0, 0.0)
     if usable.any():
-        plane = _centre(latitude[usable], longitude[usable])
+        plane = _centre(*_some(latitude, longitude, usable, order))
         usable &= ~_null_island(latitude, longitude, usable, plane)
     if usable.any():
-        plane = _centre(latitude[usable], longitude[usable])
-    codes = np.where(usable & timed, FixReason.ok, FixReason.invalid).astype(np.uint8)
-    filed = np.flatnonzero(timed)
-    shifts = clock_shifts(internal[filed])
-    moved = internal[filed] + shifts
-    codes[filed[(shifts != 0.0) & usable[filed]]] = FixReason.out_of_order
-    # Ties in time are ordered by place, so that the answer does not depend on the order of the rows.
-    sorting = np.lexsort((longitude[filed], latitude[filed], moved))
-    order, t = filed[sorting], moved[sorting]
-    t = t - (t[0] if order.size else 0.0)
-    held = usable[order]
-    fixes = np.zeros((order.size, 2))
-    fixes[held] = plane.project(latitude[order][held], longitude[order][held])
-    twin = _twins(t, latitude[order], longitude[order], held)
-    alone = held & (twin == np.arange(order.size))
-    codes[order[held & ~alone]] = FixReason.duplicate
-    repeat = np.zeros(order.size, dtype=np.bool_)
-    repeat[alone] = repeats(latitude[order][alone], longitude[order][alone])
+        plane = _centre(*_some(latitude, longitude, usable, order))
+    codes = np.full(n, FixReason.invalid, dtype=np.uint8)
+    codes[usable if filed is None else usable & np.isfinite(internal)] = FixReason.ok
+    if shift is not None:
+        off = np.flatnonzero(shift) if filed is None else filed[np.flatnonzero(shift)]
+        codes[off[usable[off]]] = FixReason.out_of_order
+    t = moved if sorting is None else moved[sorting]
+    if t.size and t[0] != 0.0:
+        t = t - t[0]
+    held = usable if order is None else usable[order]
+    duplicates, twins = find_twins(t, latitude, longitude, held, order)
+    alone = held.copy()
+    alone[duplicates] = False
+    codes[duplicates if order is None else order[duplicates]] = FixReason.duplicate
+    repeat = np.zeros(t.size, dtype=np.bool_)
+    repeat[alone] = repeats(*(_chosen(column, alone, order) for column in (latitude, longitude)))
+    lat_known, lon_known = _where_usable(latitude, longitude, usable)
+    fixes = Projected(plane, lat_known, lon_known, held, order)
+    measures = alone & ~repeat
+    velocity, velocity_variance = trusted_velocities(
+        t, fixes, velocities_of(speed_mps, bearing_deg, plane, latitude, longitude, order), measures
+    )
     return Rows(
         time=column,
         axis=axis,
         codes=codes,
-        lat_deg=np.where(usable, latitude, np.nan),
-        lon_deg=np.where(usable, longitude, np.nan),
+        lat_deg=lat_known,
+        lon_deg=lon_known,
         order=order,
         t=np.ascontiguousarray(t),
         fixes=fixes,
-        measures=alone & ~repeat,
+        measures=measures,
         repeat=repeat,
-        twin=twin,
-        shift=shifts[sorting],
-        reported=_reported(accuracy_m, n, order),
-        height=_heights(height_m, n, order),
-        velocity=_velocities(speed_mps, bearing_deg, plane, latitude, longitude, order),
+        duplicates=duplicates,
+        twins=twins,
+        shift=None if shift is None else shift if sorting is None else shift[sorting],
+        reported=reported_radii(accuracy_m, n, order),
+        height=heights_of(height_m, n, order),
+        velocity=velocity,
+        velocity_variance=velocity_variance,
         plane=plane,
-        was_sorted=bool(np.all(np.diff(order) > 0)),
+        was_sorted=order is None or bool(np.all(order[1:] > order[:-1])),
     )
 
 
@@ -156,26 +184,63 @@ def times_of(t_s: ArrayLike) -> tuple[FloatArray, TimeAxis, npt.NDArray[Any]]:
     try:
         if array.dtype.kind == "U" or (array.dtype.kind == "O" and _holds_text(array)):
             array = as_moments(array)
-        return as_times(array)
+        return _of_moments(array) if array.dtype == "datetime64[ns]" and array.ndim == 1 else as_times(array)
     except InputError as error:
         raise InputError("t_s", error.message) from error
+
+
+def _of_moments(
+    moments: npt.NDArray[np.datetime64],
+) -> tuple[FloatArray, TimeAxis, npt.NDArray[np.datetime64]]:
+    """Seconds since the first of many points in time, with intermediate results for some at a time."""
+    known = [
+        part[~np.isnat(part)].min(initial=np.datetime64(np.iinfo(np.int64).max, "ns"))
+        for part in _parts(moments)
+    ]
+    if not any(part < np.datetime64(np.iinfo(np.int64).max, "ns") for part in known):
+        return as_times(moments)
+    axis = TimeAxis("datetime", min(known))
+    seconds = np.empty(moments.size)
+    for part, out in zip(_parts(moments), _parts(seconds), strict=True):
+        out[:] = axis.to_internal(part)
+    return seconds, axis, moments
+
+
+def _parts(column: npt.NDArray[Any]) -> list[npt.NDArray[Any]]:
+    return [column[first : first + _AT_ONCE] for first in range(0, column.size, _AT_ONCE)]
 
 
 def _holds_text(array: npt.NDArray[Any]) -> bool:
     return any(isinstance(value, str) for value in array.ravel())
 
 
-def column_of(values: ArrayLike, field: str, n: int) -> FloatArray:
-    """One number per time; anything else is the caller's mistake."""
-    column = as_vector(values, field)
-    if column.size != n:
-        raise InputError(field, f"{column.size} values for {n} times; give one value per time")
-    return column
+def _some(
+    latitude: FloatArray, longitude: FloatArray, usable: BoolArray, order: IntArray | None
+) -> tuple[FloatArray, FloatArray]:
+    """Places that show where a track is: all of a short one, of a long one some, evenly spread in time."""
+    if usable.size > _MANY:
+        rows = np.linspace(0, (usable.size if order is None else order.size) - 1, _MANY).astype(np.int64)
+        rows = rows if order is None else order[rows]
+        rows = rows[usable[rows]]
+        if rows.size:
+            return latitude[rows], longitude[rows]
+    return latitude[usable], longitude[usable]
 
 
-def on_earth(latitude: FloatArray, longitude: FloatArray) -> BoolArray:
-    """Whether degrees name a place."""
-    return (np.abs(latitude) <= 90.0) & (np.abs(longitude) <= 360.0)
+def _chosen(column: FloatArray, chosen: BoolArray, order: IntArray | None) -> FloatArray:
+    """Values of the chosen rows in order of time."""
+    if order is None:
+        return column if chosen.all() else column[chosen]
+    return column[order[chosen]]
+
+
+def _where_usable(
+    latitude: FloatArray, longitude: FloatArray, usable: BoolArray
+) -> tuple[FloatArray, FloatArray]:
+    """Places as they came, NaN where they are of no use; the columns themselves where all are of use."""
+    if usable.all():
+        return latitude, longitude
+    return np.where(usable, latitude, np.nan), np.where(usable, longitude, np.nan)
 
 
 def _centre(latitude: FloatArray, longitude: FloatArray) -> Plane:
@@ -190,69 +255,11 @@ def _centre(latitude: FloatArray, longitude: FloatArray) -> Plane:
 
 def _null_island(latitude: FloatArray, longitude: FloatArray, usable: BoolArray, plane: Plane) -> BoolArray:
     """Mark fixes at (0, 0) of a track that is elsewhere: what receivers write that know nothing."""
-    zero = usable & (np.abs(latitude) < _NULL_ISLAND_DEG) & (np.abs(longitude) < _NULL_ISLAND_DEG)
+    zero = usable & (latitude < _NULL_ISLAND_DEG) & (latitude > -_NULL_ISLAND_DEG)
+    zero &= (longitude < _NULL_ISLAND_DEG) & (longitude > -_NULL_ISLAND_DEG)
     if not zero.any() or zero.sum() == usable.sum():
         return np.zeros(usable.size, dtype=np.bool_)
     others = usable & ~zero
     place = _centre(latitude[others], longitude[others]) if 2 * zero.sum() >= usable.sum() else plane
     far = np.hypot(*place.project(np.zeros(1), np.zeros(1))[0]) > _ELSEWHERE_M
     return zero if far else np.zeros(usable.size, dtype=np.bool_)
-
-
-def _twins(t: FloatArray, latitude: FloatArray, longitude: FloatArray, held: BoolArray) -> IntArray:
-    """Place of the first row of the same time and position; rows are sorted by all three."""
-    same = np.zeros(t.size, dtype=np.bool_)
-    same[1:] = (
-        (t[1:] == t[:-1])
-        & (latitude[1:] == latitude[:-1])
-        & (longitude[1:] == longitude[:-1])
-        & held[1:]
-        & held[:-1]
-    )
-    return np.asarray(np.maximum.accumulate(np.where(same, 0, np.arange(t.size))), dtype=np.int64)
-
-
-def _reported(accuracy_m: ArrayLike | None, n: int, order: IntArray) -> FloatArray | None:
-    if accuracy_m is None:
-        return None
-    radii = column_of(accuracy_m, "accuracy_m", n)[order]
-    known = np.isfinite(radii) & (radii > 0.0)
-    if not known.any():
-        return None
-    return np.ascontiguousarray(np.clip(np.where(known, radii, np.median(radii[known])), *_ACCURACY_M))
-
-
-def _heights(height_m: ArrayLike | None, n: int, order: IntArray) -> FloatArray | None:
-    if height_m is None:
-        return None
-    heights = column_of(height_m, "height_m", n)[order]
-    with np.errstate(invalid="ignore"):
-        heights = np.where(np.abs(heights) <= HEIGHT_M, heights, np.nan)
-    return heights if np.isfinite(heights).any() else None
-
-
-def _velocities(
-    speed_mps: ArrayLike | None,
-    bearing_deg: ArrayLike | None,
-    plane: Plane,
-    latitude: FloatArray,
-    longitude: FloatArray,
-    order: IntArray,
-) -> FloatArray | None:
-    """Give reported velocities in order of time; what no receiver means is left out."""
-    n = latitude.size
-    speed = None if speed_mps is None else column_of(speed_mps, "speed_mps", n)[order]
-    bearing = None if bearing_deg is None else column_of(bearing_deg, "bearing_deg", n)[order]
-    if speed is None:
-        return None
-    if bearing is None:
-        bearing = np.full(order.size, np.nan)
-    with np.errstate(invalid="ignore"):
-        usable = on_earth(latitude[order], longitude[order]) & (speed >= 0.0) & (speed <= _FASTEST_MPS)
-    # What is repeated to the last digit was not measured again: the receiver's speed has frozen.
-    usable[1:] &= ~((speed[1:] == speed[:-1]) & ((bearing[1:] == bearing[:-1]) | np.isnan(bearing[1:])))
-    velocity = np.full((order.size, 2), np.nan)
-    bearing = np.where(np.isfinite(bearing), bearing, np.nan) % 360.0
-    places = latitude[order][usable], longitude[order][usable]
-    velocity[usable] = velocities(plane, *places, speed[usable], bearing[usable])
-    return velocity if np.isfinite(velocity).any() else None

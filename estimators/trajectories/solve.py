@@ -1,51 +1,81 @@
-"""Between the door and the answer: what measures something, and the track smoothed under its labels."""
+"""From rows behind the door to their answer: labelled by a method, smoothed, piece by piece or as a whole."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import fields
+
 import numpy as np
 
-from estimators.trajectories.estimation import Measured
-from estimators.trajectories.labelling.modes import MISSING
+from estimators.trajectories.assemble import Answer
+from estimators.trajectories.course import Course
+from estimators.trajectories.findings import open_ledger
+from estimators.trajectories.measured_rows import MeasuredRows, measured_rows
 from estimators.trajectories.methods.labelled import Labelled
+from estimators.trajectories.options import TrackOptions
+from estimators.trajectories.pieces import TrackPieces
 from estimators.trajectories.rows import Rows
-from estimators.trajectories.smoothing.rts import smooth_track
-from estimators.trajectories.smoothing.solved import Solved
-from estimators.trajectories.velocities import velocity_variance
+from estimators.trajectories.track import Track, TrackPoints
 
 
-def measured_of(rows: Rows) -> Measured:
+def measured_of(rows: Rows) -> MeasuredRows:
     """Give the rows that measure something, in order of time."""
-    return all_of(rows).where(rows.measures)
-
-
-def all_of(rows: Rows) -> Measured:
-    """Give all rows that have a time, those that measure nothing too."""
-    if rows.velocity is None:
-        return Measured(rows.t, rows.fixes, rows.reported)
-    used = rows.measures
-    variance = np.full(rows.t.size, np.inf)
-    variance[used] = velocity_variance(rows.t[used], rows.fixes[used], rows.velocity[used])
-    return Measured(rows.t, rows.fixes, rows.reported, np.nan_to_num(rows.velocity), variance)
-
-
-def smooth_rows(rows: Rows, labelled: Labelled) -> Solved:
-    """Smooth at every time, through rows that measure nothing too."""
-    m, parameters = rows.t.size, labelled.parameters
-    labels = np.full(m, MISSING, dtype=np.uint8)
-    labels[rows.measures] = labelled.labels
-    measured = all_of(rows)
-    variance = measured.variance(parameters)
-    states, covariances = np.zeros((m, 2, 3)), np.zeros((m, 3, 3))
-    smooth_track(
-        rows.t,
-        rows.fixes,
-        variance,
-        *measured.velocities(),
-        parameters.colour_m,
-        parameters.manoeuvre,
-        parameters.rates.as_array(),
-        labels,
-        states,
-        covariances,
+    return measured_rows(
+        rows.t, rows.fixes, rows.measures, rows.reported, rows.velocity, rows.velocity_variance
     )
-    return Solved(labels, variance, states, covariances)
+
+
+def solve(
+    rows: Rows,
+    labeller: Callable[[MeasuredRows], Labelled],
+    method: str,
+    options: TrackOptions,
+    level: float,
+    piece_rows: int,
+) -> TrackPieces:
+    """Label a track and smooth it under its labels.
+
+    Parameters
+    ----------
+    rows : Rows
+        With one that measures something.
+    labeller : callable
+    method : str
+        Its name.
+    options : TrackOptions
+    level : float
+        Confidence level of intervals.
+    piece_rows : int
+        Rows of a piece.
+    """
+    measured = measured_of(rows)
+    ledger = open_ledger(rows, measured)
+    answer = Answer(Course(rows, labeller(measured)), ledger, method, options, level)
+    return TrackPieces(rows, answer.blocks(), answer.facts, piece_rows)
+
+
+def whole(pieces: TrackPieces) -> Track:
+    """Put the pieces on the caller's rows."""
+    columns: dict[str, np.ndarray] = {}
+    for piece in pieces:
+        for name, values in piece.columns().items():
+            if name not in columns:
+                columns[name] = np.empty(pieces.size, dtype=values.dtype)
+            columns[name][piece.rows] = values
+    points = TrackPoints(**{field.name: columns.pop(field.name) for field in fields(TrackPoints)})
+    facts = pieces.facts()
+    time, latitude, longitude = pieces.inputs()
+    return Track(
+        method=facts.method,
+        time=time,
+        points=points,
+        height_m=columns.pop("height_m", None),
+        **columns,
+        noise=facts.noise,
+        distance=facts.distance,
+        stretches=facts.stretches,
+        level=facts.level,
+        notices=facts.notices,
+        input_lat_deg=latitude.copy(),
+        input_lon_deg=longitude.copy(),
+    )

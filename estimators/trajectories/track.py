@@ -136,8 +136,8 @@ class Track:
         Smoothed; longitudes from -180 to 180.
     height_m : ndarray, shape (n,), or None
         Smoothed; None if there were none.
-    covariance_enu_m2 : ndarray, shape (n, 3, 3)
-        Of the smoothed positions: east, north, up; NaN upward without heights.
+    variance_m2, variance_up_m2 : ndarray, shape (n,)
+        Of the smoothed positions: per horizontal axis, and upward, NaN without heights.
     speed_mps, speed_sigma_mps : ndarray, shape (n,)
     heading_deg, heading_sigma_deg : ndarray, shape (n,)
         Clockwise from north, 0 to 360. A sigma of 104, that of the uniform distribution, says: unknown.
@@ -158,7 +158,8 @@ class Track:
     lat_deg: FloatArray
     lon_deg: FloatArray
     height_m: FloatArray | None
-    covariance_enu_m2: FloatArray
+    variance_m2: FloatArray
+    variance_up_m2: FloatArray
     speed_mps: FloatArray
     speed_sigma_mps: FloatArray
     heading_deg: FloatArray
@@ -175,9 +176,21 @@ class Track:
         return int(self.lat_deg.size)
 
     @property
+    def covariance_enu_m2(self) -> FloatArray:
+        """Covariance of the smoothed positions: east, north, up; shape (n, 3, 3), NaN upward without heights.
+
+        Made when asked for: of nine entries two are distinct.
+        """
+        covariance = np.zeros((len(self), 3, 3))
+        covariance[:, 0, 0] = covariance[:, 1, 1] = self.variance_m2
+        covariance[:, 2, 2] = self.variance_up_m2
+        covariance[np.isnan(self.variance_m2)] = np.nan
+        return covariance
+
+    @property
     def sigma_m(self) -> FloatArray:
         """Standard deviation of the smoothed position, per horizontal axis, shape (n,)."""
-        return np.sqrt(0.5 * (self.covariance_enu_m2[:, 0, 0] + self.covariance_enu_m2[:, 1, 1]))
+        return np.sqrt(self.variance_m2)
 
     def summary(self) -> str:
         """Text for people: how many fixes lie, how far it goes, how sure that is."""

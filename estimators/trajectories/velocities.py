@@ -16,6 +16,7 @@ from scipy.ndimage import median_filter
 
 from estimators.arrays import BoolArray, FloatArray
 from estimators.geodesy.plane import Plane
+from estimators.trajectories.projected import Projected
 from estimators.trajectories.spans import start_from_spans
 
 _AHEAD_DEG = 1e-4
@@ -108,6 +109,38 @@ def velocity_variance(t: FloatArray, fixes: FloatArray, velocity: FloatArray) ->
     trusted = np.zeros(t.size, dtype=np.bool_)
     trusted[known] = _agree(t[known], rest, short, noise)
     return np.where(trusted, variance + slow, np.inf)
+
+
+def trusted_velocities(
+    t: FloatArray, fixes: Projected, velocity: FloatArray | None, measures: BoolArray
+) -> tuple[FloatArray | None, FloatArray | None]:
+    """Velocities of rows and their variances, as far as they can be trusted.
+
+    Parameters
+    ----------
+    t : ndarray, shape (m,)
+        Seconds, ascending.
+    fixes : Projected
+    velocity : ndarray, shape (m, 2), or None
+        NaN where there is none.
+    measures : ndarray of bool, shape (m,)
+        Rows by which velocities are judged, and of which they are taken.
+
+    Returns
+    -------
+    velocity : ndarray, shape (m, 2), or None
+        0 where there is none; None if no velocity is to be used.
+    variance : ndarray, shape (m,), or None
+        Per axis; infinite where a velocity is not to be used.
+    """
+    if velocity is None:
+        return None, None
+    used = np.flatnonzero(measures)
+    variance = np.full(t.size, np.inf)
+    variance[used] = velocity_variance(t[used], fixes[used], velocity[used])
+    if np.isinf(variance).all():
+        return None, None
+    return np.nan_to_num(velocity), variance
 
 
 def _are_copied(t: FloatArray, fixes: FloatArray, velocity: FloatArray) -> bool:

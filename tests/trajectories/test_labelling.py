@@ -7,12 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from estimators.arrays import FloatArray
 from estimators.geodesy import plane
-from estimators.trajectories import clean, clock, options, stale
+from estimators.trajectories import clean, clock, distance, measured_rows, options, ordering, projected, stale
 from estimators.trajectories.clock import clock_shifts
-from estimators.trajectories.distance import walk
+from estimators.trajectories.distance import Way
 from estimators.trajectories.estimation import Measured, estimate, label
-from estimators.trajectories.labelling import backward
+from estimators.trajectories.labelling import backward, passage
 from estimators.trajectories.labelling.backward import turned_round
 from estimators.trajectories.labelling.modes import BURST, ENTRY, EXIT, LEVEL_STRIDE, REDRAW, SPIKE
 from estimators.trajectories.parameters import TrackParameters
@@ -26,7 +27,10 @@ def measured(made: Drive) -> Measured:
     return Measured(made.t, np.ascontiguousarray(made.fixes), None)
 
 
-@pytest.mark.parametrize("module", [backward, clean, clock, options, plane, stale])
+@pytest.mark.parametrize(
+    "module",
+    [backward, clean, clock, distance, measured_rows, options, ordering, passage, plane, projected, stale],
+)
 def test_the_examples_of_the_parts_are_true(module: object) -> None:
     found = doctest.testmod(module, extraglobs={"np": np})  # type: ignore[arg-type]
     assert found.attempted > 0
@@ -98,5 +102,11 @@ def test_rows_in_any_disorder_are_no_clock_jump_of_most_rows(order: list[int]) -
 def test_a_path_is_not_longer_for_its_wiggles() -> None:
     rng = np.random.default_rng(0)
     places = np.column_stack([np.linspace(0.0, 1000.0, 1001), rng.normal(size=1001), np.zeros(1001)])
-    assert walk(places, np.full(1001, 20.0)) == pytest.approx(1000.0, rel=0.02)
-    assert walk(places, np.zeros(1001)) > 1300.0
+    assert _length(places, np.full(1001, 5.0)) == pytest.approx(1000.0, rel=0.02)
+    assert _length(places, np.zeros(1001)) > 1300.0
+
+
+def _length(places: FloatArray, sigma: FloatArray) -> float:
+    way = Way()
+    way.add(places, sigma)
+    return way.length_m

@@ -6,6 +6,7 @@ import pytest
 from estimators import InputError, NoFit, Track, clean_trajectory
 from estimators.arrays import FloatArray
 from estimators.geodesy.plane import Plane
+from estimators.trajectories.columns import velocities_of
 from estimators.trajectories.rows import read_rows
 from estimators.trajectories.velocities import velocities, velocity_variance
 from tests.trajectories.drives import MUNICH, Drive, drive, f1, with_bursts, with_spikes
@@ -121,9 +122,10 @@ def test_velocities_are_not_used_where_fixes_are_far_between() -> None:
 
 def test_speeds_that_no_receiver_means_are_left_out() -> None:
     lat, lon = MUNICH.locate(drive(0, n=6).fixes)
+    plane = read_rows(np.arange(6.0), lat, lon).plane
     speed = np.array([-1.0, np.nan, np.inf, 1e9, 5.0, 5.0])
     bearing = np.array([0.0, 0.0, 0.0, 0.0, 725.0, np.inf])
-    found = read_rows(np.arange(6.0), lat, lon, None, None, speed, bearing).velocity
+    found = velocities_of(speed, bearing, plane, lat, lon, None)
     assert found is not None
     assert np.isfinite(found[:, 0]).tolist() == [False] * 4 + [True, False]
     np.testing.assert_allclose(

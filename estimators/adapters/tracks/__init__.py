@@ -2,6 +2,7 @@
 
 from estimators.adapters.tracks.assembly import assemble
 from estimators.adapters.tracks.cleaned import Cleaned
+from estimators.adapters.tracks.cleaning import clean_file, clean_recording, stream_track
 from estimators.adapters.tracks.csv_writer import write_csv
 from estimators.adapters.tracks.geojson_writer import write_geojson
 from estimators.adapters.tracks.gpx_writer import write_gpx
@@ -13,7 +14,10 @@ __all__ = [
     "Recording",
     "RowFault",
     "assemble",
+    "clean_file",
+    "clean_recording",
     "read_track",
+    "stream_track",
     "write_csv",
     "write_geojson",
     "write_gpx",

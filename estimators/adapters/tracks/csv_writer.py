@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from itertools import chain
 
 from estimators.adapters.tracks.cleaned import Cleaned
 from estimators.adapters.tracks.recording import Recording
-from estimators.adapters.tracks.written_columns import PIECE_ROWS, Column, Texts, written_columns
+from estimators.adapters.tracks.written_columns import PIECE_ROWS, Column, Precision, Texts, written_columns
 
 _FORMULA = ("=", "+", "-", "@", "\t")
 
@@ -37,11 +38,25 @@ def write_csv(recording: Recording, cleaned: Cleaned | None = None) -> Iterator[
     b'time,lat,lon\n0,50.0000000,7.0000000\n1,,\n'
     """
     columns = list(written_columns(recording, cleaned).values())
-    return _pieces(columns, len(recording))
+    return chain([_header(columns)], _rows(columns, len(recording)))
 
 
-def _pieces(columns: list[Column], n: int) -> Iterator[bytes]:
-    yield (",".join(column.name for column in columns) + "\n").encode()
+def stream_csv(pairs: Iterable[tuple[Recording, Cleaned]], precision: Precision) -> Iterator[bytes]:
+    """Write rows as they come with what is said of them, under one header; otherwise as :func:`write_csv`."""
+    is_first = True
+    for recording, cleaned in pairs:
+        columns = list(written_columns(recording, cleaned, precision).values())
+        if is_first:
+            yield _header(columns)
+        is_first = False
+        yield from _rows(columns, len(recording))
+
+
+def _header(columns: list[Column]) -> bytes:
+    return (",".join(column.name for column in columns) + "\n").encode()
+
+
+def _rows(columns: list[Column], n: int) -> Iterator[bytes]:
     for start in range(0, n, PIECE_ROWS):
         part = slice(start, start + PIECE_ROWS)
         cells = [_cells(column, part) for column in columns]

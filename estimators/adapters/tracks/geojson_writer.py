@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from itertools import chain
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from estimators.adapters.tracks.recording import Recording
 from estimators.adapters.tracks.written_columns import (
     PIECE_ROWS,
     Column,
+    Precision,
     clock_texts,
     clock_unit,
     position_digits,
@@ -59,11 +61,25 @@ def write_geojson(
     {'coordTimes': [0, 1]}
     """
     columns = written_columns(recording, cleaned)
-    return _points(columns, len(recording)) if points else _lines(recording, cleaned)
+    if not points:
+        return _lines(recording, cleaned)
+    return chain([_HEAD], _points(columns, len(recording)), [_TAIL])
+
+
+def stream_geojson_points(
+    pairs: Iterable[tuple[Recording, Cleaned]], precision: Precision
+) -> Iterator[bytes]:
+    """Write a point for each row as they come; otherwise as :func:`write_geojson` does."""
+    yield _HEAD
+    comma = b""
+    for recording, cleaned in pairs:
+        for piece in _points(written_columns(recording, cleaned, precision), len(recording)):
+            yield comma + piece
+            comma = b",\n"
+    yield _TAIL
 
 
 def _points(columns: dict[str, Column], n: int) -> Iterator[bytes]:
-    yield _HEAD
     named = [column for name, column in columns.items() if name not in {"lat", "lon", "height_m"}]
     for start in range(0, n, PIECE_ROWS):
         part = slice(start, min(start + PIECE_ROWS, n))
@@ -77,7 +93,6 @@ def _points(columns: dict[str, Column], n: int) -> Iterator[bytes]:
             )
         ]
         yield (",\n" if start else "").encode() + ",\n".join(rows).encode()
-    yield _TAIL
 
 
 def _values(column: Column, part: slice) -> list[str]:

@@ -6,15 +6,23 @@ stands in extensions of a namespace of our own, flags and recorded positions too
 
 from __future__ import annotations
 
+import itertools
 import re
-from collections.abc import Iterator
+from collections.abc import Generator, Iterable, Iterator
+from typing import TypeAlias
 from xml.sax.saxutils import escape
 
 import numpy as np
 
 from estimators.adapters.tracks.cleaned import Cleaned
 from estimators.adapters.tracks.recording import Recording
-from estimators.adapters.tracks.written_columns import PIECE_ROWS, Column, positions, written_columns
+from estimators.adapters.tracks.written_columns import (
+    PIECE_ROWS,
+    Column,
+    Precision,
+    positions,
+    written_columns,
+)
 from estimators.arrays import InputError, IntArray
 
 NAMESPACE = "urn:plumbline:track:1"
@@ -26,6 +34,8 @@ _HEAD = (
 _ELEMENTS = {"height_m": "ele", "time": "time", "satellites": "sat", "hdop": "hdop"}
 """Columns that GPX has an element for, in the order that its schema asks for."""
 _ABOVE = frozenset({"lat", "lon", "device", "segment"})
+Place: TypeAlias = tuple[str | None, int]
+"""Device and segment of a point."""
 _NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
@@ -55,9 +65,74 @@ def write_gpx(recording: Recording, cleaned: Cleaned | None = None) -> Iterator[
     >>> print(b"".join(write_gpx(track)).decode().splitlines()[4])
     <trkpt lat="48.8300000" lon="2.4400000"><time>2021-07-28T09:19:04+02:00</time></trkpt>
     """
+    _refuse_numbers(recording)
+    return _pieces(recording, written_columns(recording, cleaned), _rows(recording, cleaned))
+
+
+def stream_gpx(pairs: Iterable[tuple[Recording, Cleaned]], precision: Precision) -> Iterator[bytes]:
+    """Write points as they come, a new track where the device changes and a new segment where that does.
+
+    Raises
+    ------
+    InputError
+        If the times are plain numbers, which GPX cannot hold.
+    """
+    yield _HEAD.encode()
+    last: Place | None = None
+    for recording, cleaned in pairs:
+        _refuse_numbers(recording)
+        rows = np.flatnonzero(np.isfinite(cleaned.lat) & np.isfinite(cleaned.lon))
+        last = yield from _track_points(recording, written_columns(recording, cleaned, precision), rows, last)
+    yield _closing(last, closes_track=True) + b"</gpx>\n"
+
+
+def _track_points(
+    recording: Recording, columns: dict[str, Column], rows: IntArray, last: Place | None
+) -> Generator[bytes, None, Place | None]:
+    """Write rows in the order given, after what was written last; returns where that leaves off."""
+    device, segment = _keys(recording, rows)
+    for start, stop in _runs(device, segment):
+        name = recording.devices[device[start]] if recording.devices else None
+        here = (name, int(segment[start]))
+        if here != last:
+            is_new = last is None or last[0] != name
+            yield _closing(last, closes_track=is_new) + _opening(name, opens_track=is_new)
+            last = here
+        for at in range(start, stop, PIECE_ROWS):
+            yield "".join(_points(columns, rows[at : min(at + PIECE_ROWS, stop)])).encode()
+    return last
+
+
+def _closing(last: Place | None, *, closes_track: bool) -> bytes:
+    if last is None:
+        return b""
+    return b"</trkseg>\n</trk>\n" if closes_track else b"</trkseg>\n"
+
+
+def _opening(name: str | None, *, opens_track: bool) -> bytes:
+    if not opens_track:
+        return b"<trkseg>\n"
+    named = "" if name is None else f"<name>{_escaped(name)}</name>\n"
+    return f"<trk>\n{named}<trkseg>\n".encode()
+
+
+def _refuse_numbers(recording: Recording) -> None:
     if recording.time.dtype.kind != "M":
         raise InputError("time", "GPX needs points in time, and this track has plain numbers; write CSV")
-    return _pieces(recording, written_columns(recording, cleaned), _rows(recording, cleaned))
+
+
+def _keys(recording: Recording, rows: IntArray) -> tuple[IntArray, IntArray]:
+    """Device and segment of rows."""
+    device = np.zeros(rows.size, dtype=np.int64) if recording.device is None else recording.device[rows]
+    segment = np.zeros(rows.size, dtype=np.int64) if recording.segment is None else recording.segment[rows]
+    return device, segment
+
+
+def _runs(device: IntArray, segment: IntArray) -> list[tuple[int, int]]:
+    """First and last + 1 of rows on end of one device and segment."""
+    changes = np.flatnonzero((np.diff(device) != 0) | (np.diff(segment) != 0)) + 1
+    edges = [0, *changes.tolist(), device.size] if device.size else []
+    return list(itertools.pairwise(edges))
 
 
 def _rows(recording: Recording, cleaned: Cleaned | None) -> IntArray:
@@ -70,21 +145,8 @@ def _rows(recording: Recording, cleaned: Cleaned | None) -> IntArray:
 
 def _pieces(recording: Recording, columns: dict[str, Column], rows: IntArray) -> Iterator[bytes]:
     yield _HEAD.encode()
-    device = np.zeros(rows.size, dtype=np.int64) if recording.device is None else recording.device[rows]
-    segment = np.zeros(rows.size, dtype=np.int64) if recording.segment is None else recording.segment[rows]
-    changes = np.flatnonzero((np.diff(device) != 0) | (np.diff(segment) != 0)) + 1
-    starts = [0, *changes.tolist()] if rows.size else []
-    for place, start in enumerate(starts):
-        stop = starts[place + 1] if place + 1 < len(starts) else rows.size
-        if place == 0 or device[start] != device[start - 1]:
-            yield ("</trk>\n" if place else "").encode() + b"<trk>\n"
-            if recording.devices:
-                yield f"<name>{_escaped(recording.devices[device[start]])}</name>\n".encode()
-        yield b"<trkseg>\n"
-        for at in range(start, stop, PIECE_ROWS):
-            yield "".join(_points(columns, rows[at : min(at + PIECE_ROWS, stop)])).encode()
-        yield b"</trkseg>\n"
-    yield b"</trk>\n</gpx>\n" if starts else b"</gpx>\n"
+    last = yield from _track_points(recording, columns, rows, None)
+    yield _closing(last, closes_track=True) + b"</gpx>\n"
 
 
 def _points(columns: dict[str, Column], rows: IntArray) -> Iterator[str]:

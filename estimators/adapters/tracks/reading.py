@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable, Mapping
+from pathlib import Path
 
 from estimators.adapters.tracks.csv_reader import read_csv
 from estimators.adapters.tracks.fit_reader import SIGNATURE, read_fit
@@ -85,7 +86,8 @@ def read_track(
         if form == "nmea":
             return read_nmea(stream)
         if form == "table":
-            return read_table(stream, columns=columns, time_unit=time_unit, most_bytes=most_bytes)
+            path = source if isinstance(source, Path) else None
+            return read_table(stream, columns=columns, time_unit=time_unit, most_bytes=most_bytes, path=path)
         return read_csv(stream, columns=columns, time_unit=time_unit)
 
 

@@ -6,9 +6,9 @@ is wrong and the reason in ``fault``: whoever sends 1,000 fixes gets 1,000 label
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from enum import IntEnum
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -111,6 +111,15 @@ class Recording:
 
     def __len__(self) -> int:
         return int(self.time.size)
+
+    def part(self, rows: slice | IntArray) -> Recording:
+        """Give some of the rows; a slice is a view, nothing is copied."""
+        columns: dict[str, Any] = {
+            field.name: column[rows]
+            for field in fields(self)
+            if isinstance(column := getattr(self, field.name), np.ndarray)
+        }
+        return replace(self, **columns)
 
     def device_names(self) -> list[str | None]:
         """Name of the device of each row; None where the file names none."""

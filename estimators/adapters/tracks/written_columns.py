@@ -17,6 +17,7 @@ from estimators.adapters.tracks.recording import Moments, Recording
 from estimators.arrays import BoolArray, FloatArray, InputError, IntArray
 
 PIECE_ROWS = 1 << 13
+_AT_ONCE = 1 << 16
 _FEWEST_DIGITS, _MOST_DIGITS = 7, 10
 """Seven digits of a degree are 11 mm, ten 11 micrometres."""
 _ROUNDING_DEG = 6e-14
@@ -44,7 +45,30 @@ class Column:
     text: Callable[[Rows], Texts]
 
 
-def written_columns(recording: Recording, cleaned: Cleaned | None) -> dict[str, Column]:
+@dataclass(frozen=True, slots=True)
+class Precision:
+    """How finely a recording is written, wherever it is cut.
+
+    Parameters
+    ----------
+    digits : int
+        Of degrees, after the point.
+    unit : {"s", "ms", "us", "ns"}
+        Of points in time.
+    """
+
+    digits: int
+    unit: Literal["s", "ms", "us", "ns"]
+
+
+def precision_of(recording: Recording) -> Precision:
+    """Precision with which nothing of a recording is lost."""
+    return Precision(position_digits(recording), clock_unit(recording))
+
+
+def written_columns(
+    recording: Recording, cleaned: Cleaned | None, precision: Precision | None = None
+) -> dict[str, Column]:
     """Columns by name, in the order in which they are written.
 
     Parameters
@@ -52,6 +76,8 @@ def written_columns(recording: Recording, cleaned: Cleaned | None) -> dict[str, 
     recording : Recording
     cleaned : Cleaned, optional
         Its positions then are ``lat`` and ``lon``, and the recorded ones ``raw_lat`` and ``raw_lon``.
+    precision : Precision, optional
+        That of the whole, if the recording is part of a longer one. Default: its own.
 
     Raises
     ------
@@ -60,12 +86,13 @@ def written_columns(recording: Recording, cleaned: Cleaned | None) -> dict[str, 
     """
     if cleaned is not None and len(cleaned.lat) != len(recording):
         raise InputError("cleaned", f"has {len(cleaned.lat)} rows where the recording has {len(recording)}")
-    columns: dict[str, Column] = {"time": _time(recording)}
+    precision = precision or precision_of(recording)
+    columns: dict[str, Column] = {"time": _time(recording, precision.unit)}
     if recording.devices:
         columns["device"] = Column("device", "text", lambda part: _devices(recording, part))
     if recording.segment is not None:
         columns["segment"] = _number("segment", recording.segment, str)
-    digits = position_digits(recording)
+    digits = precision.digits
     lat, lon, height = positions(recording, cleaned)
     columns |= {name: _fixed(name, values, digits) for name, values in (("lat", lat), ("lon", lon))}
     if height is not None:
@@ -104,13 +131,14 @@ def position_digits(recording: Recording) -> int:
     >>> position_digits(Recording("gpx", np.zeros(1), lat, lon, np.zeros(1, dtype=np.uint8)))
     9
     """
-    for digits in range(_FEWEST_DIGITS, _MOST_DIGITS):
-        if all(
-            bool((np.abs(np.round(known, digits) - known) <= _ROUNDING_DEG).all())
-            for known in (column[~np.isnan(column)] for column in (recording.lat, recording.lon))
-        ):
-            return digits
-    return _MOST_DIGITS
+    digits = _FEWEST_DIGITS
+    for column in (recording.lat, recording.lon):
+        for first in range(0, len(recording), _AT_ONCE):
+            known = column[first : first + _AT_ONCE]
+            known = known[~np.isnan(known)]
+            while digits < _MOST_DIGITS and (np.abs(np.round(known, digits) - known) > _ROUNDING_DEG).any():
+                digits += 1
+    return digits
 
 
 def _labels(cleaned: Cleaned) -> dict[str, Column]:
@@ -160,21 +188,26 @@ def _devices(recording: Recording, part: Rows) -> Texts:
     return [recording.devices[place] for place in recording.device[part].tolist()]
 
 
-def _time(recording: Recording) -> Column:
+def _time(recording: Recording, unit: Literal["s", "ms", "us", "ns"]) -> Column:
     if recording.time.dtype.kind != "M":
         return _number("time", recording.time, _shortest)
-    unit = clock_unit(recording)
     return Column("time", "text", lambda part: clock_texts(recording, part, unit))
 
 
 def clock_unit(recording: Recording) -> Literal["s", "ms", "us", "ns"]:
     """Coarsest unit in which no time of the recording is rounded."""
-    counts = recording.time[~np.isnat(recording.time)].astype(np.int64)
-    if not (counts % 1_000_000_000).any():
+    if recording.time.dtype.kind != "M":
         return "s"
-    if not (counts % 1_000_000).any():
-        return "ms"
-    return "us" if not (counts % 1_000).any() else "ns"
+    steps: list[tuple[Literal["s", "ms", "us", "ns"], int]] = [
+        ("s", 1_000_000_000), ("ms", 1_000_000), ("us", 1_000), ("ns", 1)
+    ]  # fmt: skip
+    place = 0
+    for first in range(0, len(recording), _AT_ONCE):
+        moments = recording.time[first : first + _AT_ONCE]
+        counts = moments[~np.isnat(moments)].astype("datetime64[ns]").astype(np.int64)
+        while (counts % steps[place][1]).any():
+            place += 1
+    return steps[place][0]
 
 
 def clock_texts(recording: Recording, part: Rows, unit: Literal["s", "ms", "us", "ns"]) -> Texts:

@@ -28,7 +28,7 @@ def turned_round(backward: CodeArray) -> CodeArray:
     Parameters
     ----------
     backward : ndarray of uint8, shape (n,)
-        As :func:`~estimators.trajectories.labelling.beam.label_track` labels a reversed track.
+        As :class:`~estimators.trajectories.labelling.passage.Passage` labels a reversed track.
 
     Returns
     -------

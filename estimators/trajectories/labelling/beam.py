@@ -1,4 +1,4 @@
-r"""Labels of a whole track: a beam over sequences of modes.
+r"""Labels of a track: a beam over sequences of modes, followed piece by piece.
 
 Every hypothesis is a Kalman filter with a history of labels; at each fix it branches into all that the fix
 can be (:mod:`estimators.trajectories.labelling.modes`), and the likeliest go on. Two hypotheses of the same
@@ -18,8 +18,8 @@ import math
 import numpy as np
 from numba import types
 
-from estimators.arrays import CodeArray, FloatArray
-from estimators.kernels import device, kernel, ro
+from estimators.arrays import CodeArray, FloatArray, IntArray
+from estimators.kernels import kernel, ro
 from estimators.trajectories.labelling.astray import are_twin_paths
 from estimators.trajectories.labelling.branches import BRANCHES
 from estimators.trajectories.labelling.modes import (
@@ -38,8 +38,9 @@ from estimators.trajectories.labelling.modes import (
     THROWN,
     WIDE,
 )
-from estimators.trajectories.labelling.priors import PRIORS, R_SPIKE, R_TELEPORT, R_WIDE, fill_prior
-from estimators.trajectories.labelling.state import are_twins, is_near
+from estimators.trajectories.labelling.priors import PRIORS, fill_prior, log_first
+from estimators.trajectories.labelling.settling import likeliest, settle, share_of_good, trace
+from estimators.trajectories.labelling.state import are_twins, is_near, is_too_fast
 from estimators.trajectories.labelling.steps import begin, branch, follow, look_ahead
 from estimators.trajectories.labelling.velocity import take_velocity
 
@@ -50,6 +51,8 @@ _BORN = 0.6
 would fill the beam, and what begins in earnest soon stands out."""
 _GOING_ON = (NOMINAL, NOMINAL + LEVEL_STRIDE * HURRIED, BURST, ADRIFT, EXIT)
 """Labels of what goes on or ends."""
+FIRST = 3
+"""Hypotheses of the first fix, whatever the width."""
 _FEWEST_OF_PLACE = 5
 _PLACES = 5
 """A beam has room for hypotheses of so many places at least: those of one place differ in little, and would
@@ -58,12 +61,13 @@ GOOD = (NOMINAL, WIDE, EXIT, TELEPORT)
 """Kinds of fixes that tell where the track is."""
 HOPELESS = 25.0
 """A branch exp(-25) times as likely as the best is not followed."""
+"""What begins anew has so much less of that to spare than what goes on."""
 _TOO_FAST = 30.0
 """What a speed above the top costs, as a logarithm."""
-_ASTRAY_AT_FIRST = 0.02
-"""Probability that a track begins with a fault that lasts."""
 SHORTEST_S = 1e-6
 """Fixes of one time are reckoned so far apart, so that nothing is impossible between them."""
+USED, SEEN, OPEN = range(3)
+"""Places in what is known of the course so far."""
 
 
 @kernel(
@@ -80,11 +84,24 @@ SHORTEST_S = 1e-6
         types.int64,
         types.float64,
         types.float64,
+        types.float64,
+        types.boolean,
+        types.float64[:, :, ::1],
+        types.float64[:, :, ::1],
+        types.float64[:, :, ::1],
+        types.float64[:, ::1],
+        types.int64[::1],
+        types.float64[::1],
+        types.float64[::1],
+        types.float64[:, ::1],
+        types.int64[::1],
+        types.uint8[:, ::1],
+        types.uint8[:, ::1],
         types.uint8[::1],
         types.float64[::1],
     )
 )
-def label_track(
+def label_piece(
     t: FloatArray,
     fixes: FloatArray,
     variance: FloatArray,
@@ -97,15 +114,31 @@ def label_track(
     width: int,
     hopeless: float,
     top_speed: float,
+    total: float,
+    is_last: bool,
+    x: FloatArray,
+    P: FloatArray,
+    path: FloatArray,
+    spread: FloatArray,
+    mode: IntArray,
+    age: FloatArray,
+    weight: FloatArray,
+    good: FloatArray,
+    course: IntArray,
+    parent: CodeArray,
+    kind_of: CodeArray,
     labels: CodeArray,
     probability: FloatArray,
 ) -> float:
-    """Likeliest labels of a track.
+    """Follow a track for a piece; see :class:`estimators.trajectories.labelling.passage.Passage`.
+
+    A label is settled once all hypotheses descend from it, whatever the pieces: the likeliest sequence of the
+    whole track is found without keeping the whole.
 
     Parameters
     ----------
     t : ndarray, shape (n,)
-        Seconds, increasing.
+        Seconds, increasing. The first row is the last of the piece before, if there was one.
     fixes : ndarray, shape (n, 2)
         East and north in metres.
     variance : ndarray, shape (n,)
@@ -127,49 +160,57 @@ def label_track(
         A branch exp(-hopeless) times as likely as the best is not followed.
     top_speed : float
         m/s; what would be faster, three standard deviations allowed for, is not followed. May be infinite.
-    labels : ndarray of uint8, shape (n,)
-        Out.
-    probability : ndarray, shape (n,)
+    total : float
+        What the piece before returned; 0 at first.
+    is_last : bool
+        Whether the track ends with this piece.
+    x, P, path, spread, mode, age, weight, good : ndarray, shape (room, ...)
+        Hypotheses: states, covariances, paths astray and theirs, modes, ages of bursts, logarithms of
+        weights, and in column k % lag the probability of fix k to be good, as a hypothesis and those merged
+        into it see it.
+    course : ndarray of int64, shape (3,)
+        Hypotheses in use, fixes taken in, and fixes whose labels are not settled.
+    parent, kind_of : ndarray of uint8, shape (rows, room)
+        Of each unsettled fix; with room for the piece.
+    labels : ndarray of uint8, shape (all,)
+        Out: of the whole track.
+    probability : ndarray, shape (all,)
         Out: of a fix to be neither a spike nor part of a burst.
 
     Returns
     -------
     float
-        Log likelihood of the labelled track, given its first fix.
+        Log likelihood of the labelled track, given its first fix; short of the last weights before the end.
     """
     n = t.size
-    # Three hypotheses of the first fix, whatever the width.
-    room = max(width, 3)
+    room = weight.size
     crowd = max(_FEWEST_OF_PLACE, width // _PLACES)
-    x, P, path, spread = (
-        np.zeros((room, 2, 3)),
-        np.zeros((room, 3, 3)),
-        np.zeros((room, 2, 2)),
-        np.zeros((room, 3)),
-    )
+    home_x, home_P, home_path, home_spread = x, P, path, spread
+    home_mode, home_age, home_good = mode, age, good
     x_ahead, P_ahead, path_ahead, spread_ahead = x.copy(), P.copy(), path.copy(), spread.copy()
     new_x, new_P, new_path, new_spread = x.copy(), P.copy(), path.copy(), spread.copy()
-    mode, new_mode = np.zeros(room, np.int64), np.zeros(room, np.int64)
-    age, new_age = np.zeros(room), np.zeros(room)
-    weight, new_weight = np.zeros(room), np.zeros(room)
-    parent, kind_of = np.zeros((n, room), np.int8), np.zeros((n, room), np.int8)
-    # Row k % lag: probability of fix k to be good, as a hypothesis and those merged into it see it.
-    good, new_good = np.ones((room, max(lag, 1))), np.ones((room, max(lag, 1)))
+    new_mode, new_age, new_weight = np.zeros(room, np.int64), np.zeros(room), np.zeros(room)
+    new_good = np.ones(good.shape)
     scores = np.empty(room * BRANCHES)
     kinds, origin = np.empty(room * BRANCHES, np.int64), np.empty(room * BRANCHES, np.int64)
     prior, last_dt = np.empty(PRIORS), -1.0
 
-    first = (NOMINAL, SPIKE, ADRIFT)
-    for h in range(3):
-        kind = first[h]
-        mode[h] = begin(kind, fixes[0, 0], fixes[0, 1], variance[0], colour, x[h], P[h], path[h], spread[h])
-        if velocity_variance[0] < math.inf:
-            take_velocity(x[h], P[h], velocity[0, 0], velocity[0, 1], velocity_variance[0])
-        weight[h] = log_first(kind, rates)
-        kind_of[0, h] = kind if kind != ADRIFT else ADRIFT + LEVEL_STRIDE * THROWN
-        good[h, 0] = 1.0 if kind == NOMINAL else 0.0
-    used = 3
-    total = 0.0
+    if course[SEEN] == 0:
+        first = (NOMINAL, SPIKE, ADRIFT)
+        for h in range(FIRST):
+            kind = first[h]
+            mode[h] = begin(
+                kind, fixes[0, 0], fixes[0, 1], variance[0], colour, x[h], P[h], path[h], spread[h]
+            )
+            if velocity_variance[0] < math.inf:
+                take_velocity(x[h], P[h], velocity[0, 0], velocity[0, 1], velocity_variance[0])
+            weight[h] = log_first(kind, rates)
+            kind_of[0, h] = kind if kind != ADRIFT else ADRIFT + LEVEL_STRIDE * THROWN
+            good[h, 0] = 1.0 if kind == NOMINAL else 0.0
+        course[USED], course[SEEN], course[OPEN] = FIRST, 1, 1
+    used = course[USED]
+    # Of the first row: which fix of the track it is, and where it stands among the unsettled ones.
+    at, held = course[SEEN] - 1, course[OPEN] - 1
     for k in range(1, n):
         dt = min(max(t[k] - t[k - 1], SHORTEST_S), LONGEST_S)
         east, north = fixes[k, 0], fixes[k, 1]
@@ -189,25 +230,25 @@ def label_track(
                 mode[h], age[h], weight[h], dt, east, north, variance[k], colour, prior, x_ahead[h],
                 P_ahead[h], path_ahead[h], spread_ahead[h], scores, kinds, count,
             )  # fmt: skip
-            for at in range(before, count):
-                origin[at] = h
+            for place in range(before, count):
+                origin[place] = h
         best = -math.inf
-        for at in range(count):
-            best = max(best, scores[at])
+        for place in range(count):
+            best = max(best, scores[place])
         total += best
         alive = 0
-        for at in range(count):
-            if scores[at] >= best - (hopeless if kinds[at] in _GOING_ON else _BORN * hopeless):
-                scores[alive], kinds[alive], origin[alive] = scores[at], kinds[at], origin[at]
+        for place in range(count):
+            if scores[place] >= best - (hopeless if kinds[place] in _GOING_ON else _BORN * hopeless):
+                scores[alive], kinds[alive], origin[alive] = scores[place], kinds[place], origin[place]
                 alive += 1
         kept = 0
         for _ in range(alive):
             if kept == width:
                 break
             chosen = 0
-            for at in range(1, alive):
-                if scores[at] > scores[chosen]:
-                    chosen = at
+            for place in range(1, alive):
+                if scores[place] > scores[chosen]:
+                    chosen = place
             score = scores[chosen]
             scores[chosen] = -math.inf
             h = origin[chosen]
@@ -224,7 +265,7 @@ def label_track(
                 kind, level, mode[h], dt, east, north, variance[k], colour, new_x[kept], new_P[kept],
                 new_path[kept], new_spread[kept],
             )  # fmt: skip
-            if top_speed < math.inf and _is_too_fast(new_x[kept], new_P[kept], top_speed):
+            if top_speed < math.inf and is_too_fast(new_x[kept], new_P[kept], top_speed):
                 score -= _TOO_FAST
             mass = math.exp(score - best)
             is_good = 1.0 if kind in GOOD else 0.0
@@ -248,20 +289,20 @@ def label_track(
                 if lag > 0:
                     share = mass / (mass + new_weight[twin])
                     for row in range(lag):
-                        seen = is_good if row == k % lag else good[h, row]
+                        seen = is_good if row == (at + k) % lag else good[h, row]
                         new_good[twin, row] += share * (seen - new_good[twin, row])
                 new_weight[twin] += mass
                 continue
             if neighbours >= crowd:
                 continue
             for row in range(lag):
-                new_good[kept, row] = is_good if row == k % lag else good[h, row]
+                new_good[kept, row] = is_good if row == (at + k) % lag else good[h, row]
             new_mode[kept] = now
             lasting = now >= BURSTING and mode[h] == now and kind != REDRAW
             new_age[kept] = age[h] + dt if lasting else 0.0
             new_weight[kept] = mass
-            parent[k, kept] = h
-            kind_of[k, kept] = kinds[chosen]
+            parent[held + k, kept] = h
+            kind_of[held + k, kept] = kinds[chosen]
             kept += 1
         used = kept
         x, new_x = new_x, x
@@ -273,46 +314,21 @@ def label_track(
         for h in range(used):
             weight[h] = math.log(new_weight[h])
         good, new_good = new_good, good
-        if lag > 0 and k + 1 >= lag:
-            probability[k + 1 - lag] = _share((k + 1) % lag, used, weight, good)
-    for k in range(max(0, n - lag), n):
-        probability[k] = _share(k % lag, used, weight, good)
-    h = 0
-    for other in range(1, used):
-        if weight[other] > weight[h]:
-            h = other
-    held = 0.0
-    for other in range(used):
-        held += math.exp(weight[other] - weight[h])
-    total += weight[h] + math.log(held)
-    for k in range(n - 1, -1, -1):
-        labels[k] = kind_of[k, h]
-        h = parent[k, h]
+        if lag > 0 and at + k + 1 >= lag:
+            probability[at + k + 1 - lag] = share_of_good((at + k + 1) % lag, used, weight, good)
+    course[USED], course[SEEN] = used, at + n
+    last = held + n - 1
+    if not is_last:
+        for h in range(used):
+            home_x[h], home_P[h], home_good[h] = x[h], P[h], good[h]
+            home_path[h], home_spread[h] = path[h], spread[h]
+            home_mode[h], home_age[h] = mode[h], age[h]
+        course[OPEN] = settle(last, at - held, used, parent, kind_of, labels)
+        return float(total)
+    for k in range(max(0, at + n - lag), at + n):
+        probability[k] = share_of_good(k % lag, used, weight, good)
+    h, mass = likeliest(used, weight)
+    total += weight[h] + math.log(mass)
+    trace(last, h, at - held, parent, kind_of, labels)
+    course[OPEN] = 0
     return float(total)
-
-
-@device
-def log_first(kind: int, rates: FloatArray) -> float:
-    """Ln prior of what the first fix is."""
-    if kind == ADRIFT:
-        return math.log(_ASTRAY_AT_FIRST)
-    if kind == SPIKE:
-        return math.log(rates[R_SPIKE])
-    return math.log1p(-rates[R_SPIKE] - rates[R_WIDE] - rates[R_TELEPORT])
-
-
-@device
-def _is_too_fast(x: FloatArray, P: FloatArray, top_speed: float) -> bool:
-    """Whether a state moves faster than the track can, by more than three standard deviations."""
-    return math.hypot(x[0, 1], x[1, 1]) > top_speed + 3.0 * math.sqrt(P[1, 1])
-
-
-@device
-def _share(row: int, used: int, weight: FloatArray, good: FloatArray) -> float:
-    """Probability that a fix was good, over the hypotheses of a later one."""
-    held, total = 0.0, 0.0
-    for h in range(used):
-        mass = math.exp(weight[h])
-        total += mass
-        held += mass * good[h, row]
-    return min(1.0, held / total)

@@ -14,7 +14,7 @@ from numba import types
 
 from estimators.arrays import CodeArray, FloatArray, IntArray
 from estimators.kernels import device, kernel, ro
-from estimators.trajectories.labelling.beam import GOOD, SHORTEST_S, log_first
+from estimators.trajectories.labelling.beam import GOOD, SHORTEST_S
 from estimators.trajectories.labelling.branches import BRANCHES
 from estimators.trajectories.labelling.modes import (
     ADRIFT,
@@ -30,7 +30,7 @@ from estimators.trajectories.labelling.modes import (
     SPIKE,
     THROWN,
 )
-from estimators.trajectories.labelling.priors import PRIORS, fill_prior
+from estimators.trajectories.labelling.priors import PRIORS, fill_prior, log_first
 from estimators.trajectories.labelling.steps import begin, branch, follow, look_ahead
 from estimators.trajectories.labelling.velocity import take_velocity
 
@@ -69,7 +69,7 @@ def judge_labels(
     Parameters
     ----------
     t, fixes, variance, velocity, velocity_variance, colour, manoeuvre, rates
-        As for :func:`estimators.trajectories.labelling.beam.label_track`.
+        As for :func:`estimators.trajectories.labelling.beam.label_piece`.
     labels : ndarray of uint8, shape (n,)
     resolved : ndarray of uint8, shape (n,)
         Out: the same labels as the model has them.

@@ -9,7 +9,7 @@ import math
 
 from estimators.arrays import FloatArray
 from estimators.kernels import device
-from estimators.trajectories.labelling.modes import LEVELS
+from estimators.trajectories.labelling.modes import ADRIFT, LEVELS, SPIKE
 
 (
     R_SPIKE, R_WIDE, R_ENTRY, R_REDRAW, R_TELEPORT, R_LEVEL, R_WALK, R_GROWTH, R_STRAY, R_SWERVE, R_HURRY,
@@ -23,6 +23,8 @@ from estimators.trajectories.labelling.modes import LEVELS
 ) = range(16)  # fmt: skip
 """Places in the array of priors; see :func:`fill_prior`."""
 PRIORS = 16
+_ASTRAY_AT_FIRST = 0.02
+"""Probability that a track begins with a fault that lasts."""
 
 
 @device
@@ -47,3 +49,13 @@ def fill_prior(dt: float, rates: FloatArray, prior: FloatArray) -> None:
     prior[OTHER_LEVEL] = math.log(shift / (LEVELS - 1))
     prior[SAME_OFFSET] = math.log1p(-redraw)
     prior[NEW_OFFSET] = math.log(redraw)
+
+
+@device
+def log_first(kind: int, rates: FloatArray) -> float:
+    """Ln prior of what the first fix is."""
+    if kind == ADRIFT:
+        return math.log(_ASTRAY_AT_FIRST)
+    if kind == SPIKE:
+        return math.log(rates[R_SPIKE])
+    return math.log1p(-rates[R_SPIKE] - rates[R_WIDE] - rates[R_TELEPORT])

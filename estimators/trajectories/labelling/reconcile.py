@@ -6,7 +6,7 @@ errs elsewhere. Where the two differ, each is judged with what both agree upon b
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -21,9 +21,13 @@ from estimators.trajectories.labelling.modes import (
     SPIKE,
     WIDE,
 )
+from estimators.trajectories.stale import runs_of
 
 _MARGIN = 60
 """Fixes on either side by which a difference is judged."""
+
+_LONGEST = 1 << 17
+"""Fixes of a stretch that is read another way; some 20 MB while it is."""
 
 Judge = Callable[[slice, CodeArray], float]
 """From some fixes on end and their labels to their log likelihood."""
@@ -71,9 +75,22 @@ def doubtful(labels: CodeArray) -> list[slice]:
     firsts, lasts = odd[np.concatenate([[0], breaks + 1])], odd[np.concatenate([breaks, [odd.size - 1]])]
     n = labels.size
     return [
-        slice(max(int(first) - _MARGIN, 0), min(int(last) + 1 + _MARGIN, n))
-        for first, last in zip(firsts, lasts, strict=True)
+        part
+        for first, last in zip(firsts.tolist(), lasts.tolist(), strict=True)
+        for part in _not_longer(labels, max(first - _MARGIN, 0), min(last + 1 + _MARGIN, n))
     ]
+
+
+def _not_longer(labels: CodeArray, first: int, stop: int) -> Iterator[slice]:
+    """Cut a stretch that is too long to be held where most fixes on end are good."""
+    while stop - first > _LONGEST:
+        latter = first + _LONGEST // 2
+        runs = runs_of(is_good(labels[latter : first + _LONGEST]))
+        begin, end = max(runs, key=lambda run: run[1] - run[0], default=(0, _LONGEST))
+        cut = latter + (begin + end) // 2
+        yield slice(first, cut)
+        first = cut
+    yield slice(first, stop)
 
 
 def is_good(labels: CodeArray) -> BoolArray:

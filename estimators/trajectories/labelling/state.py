@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from estimators.arrays import FloatArray
 from estimators.kernels import device
 
@@ -120,3 +122,9 @@ def are_twins(x: FloatArray, P: FloatArray, other: FloatArray, other_P: FloatArr
         if apart >= limit or abs(P[k, k] - other_P[k, k]) >= TWIN_SPREAD * other_P[k, k]:
             return False
     return True
+
+
+@device
+def is_too_fast(x: FloatArray, P: FloatArray, top_speed: float) -> bool:
+    """Whether a state moves faster than the track can, by more than three standard deviations."""
+    return math.hypot(x[0, 1], x[1, 1]) > top_speed + 3.0 * math.sqrt(P[1, 1])

@@ -6,8 +6,9 @@ import numpy as np
 import numpy.typing as npt
 
 from estimators.arrays import ArrayLike, FloatArray, InputError
+from estimators.trajectories.columns import HEIGHT_M, column_of, on_earth
 from estimators.trajectories.live.stream import Fix, Stream, TimeKind
-from estimators.trajectories.rows import HEIGHT_M, column_of, on_earth, times_of
+from estimators.trajectories.rows import times_of
 
 
 def arrivals(

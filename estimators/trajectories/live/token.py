@@ -18,10 +18,11 @@ from typing import Final
 import numpy as np
 
 from estimators.arrays import LARGEST_TIME, InputError
+from estimators.trajectories.columns import HEIGHT_M
 from estimators.trajectories.live.stream import LAGS, MOST_HELD, Fix, Settings, Stream, TimeKind
 from estimators.trajectories.options import TrackOptions
 from estimators.trajectories.parameters import Rates, TrackParameters
-from estimators.trajectories.rows import HEIGHT_M, LONGEST_S
+from estimators.trajectories.rows import LONGEST_S
 
 LONGEST_TOKEN = 32_768
 _MAGIC: Final = b"plmb-live"

@@ -8,14 +8,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from estimators.trajectories.assemble import assemble
 from estimators.trajectories.estimation import Measured, estimate, label
 from estimators.trajectories.live.stream import Fix, Stream
+from estimators.trajectories.measured_rows import MeasuredRows
+from estimators.trajectories.methods.labelled import Labelled
 from estimators.trajectories.methods.whole_track import label_both_ways
 from estimators.trajectories.options import TrackOptions
 from estimators.trajectories.parameters import TrackParameters
 from estimators.trajectories.rows import Rows, read_rows
-from estimators.trajectories.solve import measured_of, smooth_rows
+from estimators.trajectories.smoothing.blocks import BLOCK
+from estimators.trajectories.solve import measured_of, solve, whole
 from estimators.trajectories.track import Track
 
 NAME = "fixed-lag"
@@ -43,12 +45,14 @@ def solve_window(stream: Stream) -> tuple[Track | None, int]:
     rows = _rows(stream, stream.held[first:])
     if not rows.measures.any():
         return None, first
-    measured = measured_of(rows)
     settled = int(np.count_nonzero(rows.measures[: stream.settled - first]))
-    labelled = label_both_ways(measured, _present(measured, settled, stream), _top_speed(stream))
-    solved = smooth_rows(rows, labelled)
+
+    def label_open(fixes: MeasuredRows) -> Labelled:
+        measured = fixes.whole()
+        return label_both_ways(measured, _present(measured, settled, stream), _top_speed(stream))
+
     options = TrackOptions(sigma_m=stream.settings.sigma_m, max_speed_mps=stream.settings.max_speed_mps)
-    return assemble(rows, measured, labelled, solved, NAME, options, _LEVEL), first
+    return whole(solve(rows, label_open, NAME, options, _LEVEL, BLOCK)), first
 
 
 def _present(measured: Measured, settled: int, stream: Stream) -> TrackParameters:
@@ -84,7 +88,7 @@ def learn(stream: Stream) -> None:
     by_accuracy = 2 * int(known.sum()) >= reported.size
     before = stream.typical_accuracy
     stream.typical_accuracy = float(np.median(reported[known])) if by_accuracy else float("nan")
-    measured = measured_of(_rows(stream, stream.held))
+    measured = measured_of(_rows(stream, stream.held)).whole()
     if measured.t.size < _FEWEST or not measured.t[-1] > measured.t[0]:
         stream.typical_accuracy = before
         return

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from estimators.trajectories.estimation import Measured
+from estimators.trajectories.measured_rows import MeasuredRows
 from estimators.trajectories.methods.coherent_votes import label_by_coherent_votes
 from estimators.trajectories.methods.gated_filter import label_by_filter
 from estimators.trajectories.methods.labelled import Labelled
@@ -27,7 +28,8 @@ class TrackMethod:
     title, summary, when_to_use, source : str
         For people.
     labeller : callable
-        From what was measured, in order of time, and the options to labels.
+        From the rows that measure something and the options to labels. One that takes the whole track at once
+        is wrapped in :func:`at_once`.
     """
 
     name: str
@@ -35,7 +37,14 @@ class TrackMethod:
     summary: str
     when_to_use: str
     source: str
-    labeller: Callable[[Measured, TrackOptions], Labelled]
+    labeller: Callable[[MeasuredRows, TrackOptions], Labelled]
+
+
+def at_once(
+    labeller: Callable[[Measured, TrackOptions], Labelled],
+) -> Callable[[MeasuredRows, TrackOptions], Labelled]:
+    """Hand the whole track to a function that takes it at once."""
+    return lambda rows, options: labeller(rows.whole(), options)
 
 
 _ROWS = (
@@ -55,7 +64,7 @@ _ROWS = (
         "likeliest there and then.",
         "To compare with a filter that cannot look back.",
         "Kalman 1960; Rauch, Tung and Striebel 1965",
-        label_by_filter,
+        at_once(label_by_filter),
     ),
     TrackMethod(
         "ransac",
@@ -64,7 +73,7 @@ _ROWS = (
         "that most windows leave out.",
         "To compare with consensus that looks at a window at a time; faults that fill a window pass.",
         "Fischler and Bolles 1981; Torr and Zisserman 2000",
-        label_by_votes,
+        at_once(label_by_votes),
     ),
     TrackMethod(
         "gc-ransac",
@@ -73,7 +82,7 @@ _ROWS = (
         "exactly.",
         "To compare; it closes gaps within runs of faults, and fills a window no better than RANSAC.",
         "Barath and Matas 2018, the energy of the paper; Viterbi 1967",
-        label_by_coherent_votes,
+        at_once(label_by_coherent_votes),
     ),
     TrackMethod(
         "speed-gate",
@@ -81,7 +90,7 @@ _ROWS = (
         "Leaves out every fix that is farther from the last one kept than the highest speed allows.",
         "To compare with other software; one fault at the start or a lasting one defeats it.",
         "The filter of scikit-mobility and others",
-        label_by_speed,
+        at_once(label_by_speed),
     ),
 )
 

@@ -7,6 +7,8 @@ differences; fixes count by the weights of Student's t with 4 degrees of freedom
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numba import types
 
@@ -20,6 +22,9 @@ _STEPS = 8
 _FRESH = 1e10
 _RATE_SPREAD_MPS = 5.0
 _UNMEASURED = np.inf
+HALO = 1 << 13
+"""Known heights beyond a piece, on either side, that are smoothed along; farther ones do not matter."""
+_SAMPLE = 1 << 17
 
 
 @kernel(
@@ -91,8 +96,52 @@ def smooth_line(
         out[k], spread[k] = x, a
 
 
-def smooth_height(t: FloatArray, height: FloatArray, trusted: BoolArray) -> tuple[FloatArray, FloatArray]:
-    """Heights along the track and their variances.
+@dataclass(frozen=True, slots=True)
+class HeightModel:
+    """What the heights of a track are made of.
+
+    Attributes
+    ----------
+    level_m : float
+    variance, coloured : float
+        Of all noise, and of the part that lasts, m^2.
+    manoeuvre : float
+        Spectral density of the acceleration.
+    """
+
+    level_m: float
+    variance: float
+    coloured: float
+    manoeuvre: float
+
+
+def trusted_heights(height: FloatArray, trusted: BoolArray) -> BoolArray:
+    """Rows whose heights count: those of good rows; those of others if there are no others."""
+    known = np.isfinite(height)
+    both = known & trusted
+    return both if both.any() else known
+
+
+def estimate_heights(t: FloatArray, height: FloatArray, used: BoolArray) -> HeightModel:
+    """Find level, noise and motion of heights, of a long track by some of them.
+
+    Parameters
+    ----------
+    t, height : ndarray, shape (m,)
+    used : ndarray of bool, shape (m,)
+    """
+    rows = np.flatnonzero(used)
+    if rows.size > _SAMPLE:
+        rows = np.concatenate([part[: _SAMPLE // 16] for part in np.array_split(rows, 16)])
+    level = float(np.median(height[rows]))
+    noise, colour, manoeuvre = np.exp(start_from_spans(t[rows], height[rows, None] - level)).tolist()
+    return HeightModel(level, noise * noise + colour * colour, colour * colour, manoeuvre)
+
+
+def smooth_height(
+    t: FloatArray, height: FloatArray, used: BoolArray, model: HeightModel, part: slice
+) -> tuple[FloatArray, FloatArray]:
+    """Heights along a part of the track and their variances.
 
     Parameters
     ----------
@@ -100,26 +149,30 @@ def smooth_height(t: FloatArray, height: FloatArray, trusted: BoolArray) -> tupl
         Seconds, ascending.
     height : ndarray, shape (m,)
         Metres; NaN where there is none.
-    trusted : ndarray of bool, shape (m,)
-        Rows whose horizontal position is good; the heights of others count if there are no others.
+    used : ndarray of bool, shape (m,)
+        Rows whose heights count.
+    model : HeightModel
+    part : slice
 
     Returns
     -------
-    height, variance : ndarray, shape (m,)
+    height, variance : ndarray, shape (rows of the part,)
     """
-    known = np.isfinite(height)
-    used = known & trusted if np.any(known & trusted) else known
-    level = float(np.median(height[used]))
-    measured = np.where(used, height - level, 0.0)
-    noise, colour, manoeuvre = np.exp(start_from_spans(t[used], measured[used, None]))
-    base = noise * noise + colour * colour
-    variance = np.where(used, base, _UNMEASURED)
+    first, stop = part.start, part.stop
+    while first > 0 and np.count_nonzero(used[first : part.start]) < HALO:
+        first = max(0, first - HALO)
+    while stop < t.size and np.count_nonzero(used[part.stop : stop]) < HALO:
+        stop = min(t.size, stop + HALO)
+    around = slice(first, stop)
+    t, used = t[around], used[around]
+    measured = np.where(used, height[around] - model.level_m, 0.0)
+    variance = np.where(used, model.variance, _UNMEASURED)
     out, spread = np.zeros(t.size), np.zeros(t.size)
     for _ in range(_STEPS):
-        smooth_line(t, measured, variance, float(manoeuvre), out, spread)
+        smooth_line(t, measured, variance, model.manoeuvre, out, spread)
         off = (measured - out) ** 2 + spread
-        weight = (_DOF + 1.0) / (_DOF + off / base)
-        variance = np.where(used, base / weight, _UNMEASURED)
+        weight = (_DOF + 1.0) / (_DOF + off / model.variance)
+        variance = np.where(used, model.variance / weight, _UNMEASURED)
+    own = slice(part.start - first, part.stop - first)
     # White noise averages out, coloured noise does not.
-    spread = spread + colour * colour
-    return out + level, np.maximum(spread, 1e-6)
+    return out[own] + model.level_m, np.maximum(spread[own] + model.coloured, 1e-6)

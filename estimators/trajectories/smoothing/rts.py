@@ -42,10 +42,12 @@ from estimators.trajectories.labelling.velocity import take_velocity
 
 _FRESH = 1e10
 """Variance of what is not known at all, m^2."""
+IN_BURST, IN_HURRY = 1, 2
+"""What lasts from row to row; a course of the filter is none, either or both."""
 
 
 @kernel(
-    types.void(
+    types.int64(
         ro(types.float64),
         ro(types.float64, 2),
         ro(types.float64),
@@ -55,11 +57,16 @@ _FRESH = 1e10
         types.float64,
         ro(types.float64),
         ro(types.uint8),
+        types.float64[:, ::1],
+        types.float64[:, ::1],
+        types.int64,
+        types.boolean,
+        types.boolean,
         types.float64[:, :, ::1],
         types.float64[:, :, ::1],
     )
 )
-def smooth_track(
+def smooth_piece(
     t: FloatArray,
     fixes: FloatArray,
     variance: FloatArray,
@@ -69,35 +76,56 @@ def smooth_track(
     manoeuvre: float,
     rates: FloatArray,
     labels: CodeArray,
+    x: FloatArray,
+    P: FloatArray,
+    lasting: int,
+    is_first: bool,
+    is_last: bool,
     states: FloatArray,
     covariances: FloatArray,
-) -> None:
-    """Smooth a track under its labels.
+) -> int:
+    """Filter a piece of a track under its labels and, on request, smooth it.
+
+    The filter goes on from what the piece before left, the smoother from what the piece behind begins with:
+    the pieces are those of the track smoothed as a whole, to the bit.
 
     Parameters
     ----------
     t, fixes, variance, velocity, velocity_variance, colour, manoeuvre, rates
-        As for :func:`estimators.trajectories.labelling.beam.label_track`.
+        As for :func:`estimators.trajectories.labelling.beam.label_piece`. Unless the piece is the first, its
+        first row is the last of the piece before; unless it is the last, its last is the first of the next.
     labels : ndarray of uint8, shape (n,)
         ``MISSING`` where nothing was measured.
-    states : ndarray, shape (n, 2, 3)
-        Out: position, velocity and bias, east and north.
-    covariances : ndarray, shape (n, 3, 3)
-        Out; of each axis.
+    x : ndarray, shape (2, 3)
+        Position, velocity and bias, east and north, before the first row that is not yet taken in. Out: after
+        the last row.
+    P : ndarray, shape (3, 3)
+        Its covariance, of each axis; likewise.
+    lasting : int
+        What lasts at the row before: ``IN_BURST``, ``IN_HURRY``, their sum or 0.
+    is_first, is_last : bool
+        Whether the track begins, and ends, with this piece.
+    states : ndarray, shape (n, 2, 3), or none
+        Out: smoothed. In the last row, unless the piece is the last, in: the smoothed state there. Without
+        rows the piece is filtered only.
+    covariances : ndarray, shape (n, 3, 3), or none
+        Likewise.
+
+    Returns
+    -------
+    int
+        What lasts at the last row.
     """
     n = t.size
-    first = 0
-    while first < n - 1 and labels[first] % LEVEL_STRIDE in (SPIKE, MISSING, ADRIFT):
-        first += 1
-    x, P = np.zeros((2, 3)), np.zeros((3, 3))
-    start_at(x, P, fixes[first, 0], fixes[first, 1], _FRESH, colour, STILL_SPREAD_MPS**2)
-    filtered, filtered_P = np.zeros((n, 2, 3)), np.zeros((n, 3, 3))
-    ahead, ahead_P = np.zeros((n, 2, 3)), np.zeros((n, 3, 3))
+    smooths = states.shape[0] > 0
+    rows = n if smooths else 1
+    filtered, filtered_P = np.zeros((rows, 2, 3)), np.zeros((rows, 3, 3))
+    ahead, ahead_P = np.zeros((rows, 2, 3)), np.zeros((rows, 3, 3))
     keep = np.zeros(n)
     squared = colour * colour
-    bursting = False
-    hurried = False
-    for k in range(n):
+    own = 0 if is_first else 1
+    bursting, hurried = lasting & IN_BURST != 0, lasting & IN_HURRY != 0
+    for k in range(own, n):
         kind, level = labels[k] % LEVEL_STRIDE, labels[k] // LEVEL_STRIDE
         dt = min(t[k] - t[k - 1], LONGEST_S) if k > 0 else 0.0
         if kind in (ENTRY, REDRAW):
@@ -112,7 +140,7 @@ def smooth_track(
             walk = squared * (1.0 - fade * fade)
         keep[k] = fade
         q = hurry(manoeuvre) if hurried else manoeuvre
-        if kind not in (MISSING,):
+        if kind != MISSING:
             hurried = level == HURRIED or (kind == TELEPORT and level == SWERVED)
         for axis in range(2):
             x[axis, 0] += dt * x[axis, 1]
@@ -128,7 +156,8 @@ def smooth_track(
         elif kind == TELEPORT:
             P[0, 0] += _FRESH
             P[1, 1] += JUMP_SPREAD_MPS**2
-        _copy(x, P, ahead[k], ahead_P[k])
+        if smooths:
+            _copy(x, P, ahead[k], ahead_P[k])
         if velocity_variance[k] < math.inf:
             take_velocity(x, P, velocity[k, 0], velocity[k, 1], velocity_variance[k])
         if kind not in (SPIKE, MISSING, ADRIFT):
@@ -138,10 +167,15 @@ def smooth_track(
                 * (WIDE_FACTOR if kind == WIDE else 1.0)
             )
             update(x, P, fixes[k, 0], fixes[k, 1], noise)
-        _copy(x, P, filtered[k], filtered_P[k])
-    _copy(filtered[n - 1], filtered_P[n - 1], states[n - 1], covariances[n - 1])
+        if smooths:
+            _copy(x, P, filtered[k], filtered_P[k])
+    lasting = (IN_BURST if bursting else 0) + (IN_HURRY if hurried else 0)
+    if not smooths:
+        return lasting
+    if is_last:
+        _copy(filtered[n - 1], filtered_P[n - 1], states[n - 1], covariances[n - 1])
     inverse, factor, gain, held = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
-    for k in range(n - 2, -1, -1):
+    for k in range(n - 2, own - 1, -1):
         _copy(filtered[k], filtered_P[k], states[k], covariances[k])
         if not invert(ahead_P[k + 1], inverse, factor):
             continue
@@ -171,6 +205,14 @@ def smooth_track(
             for j in range(3):
                 for m in range(3):
                     covariances[k, i, j] += held[i, m] * gain[j, m]
+    return lasting
+
+
+def begin(east: float, north: float, colour: float) -> tuple[FloatArray, FloatArray]:
+    """State and covariance before a track that is first seen at a place."""
+    x, P = np.zeros((2, 3)), np.zeros((3, 3))
+    start_at(x, P, east, north, _FRESH, colour, STILL_SPREAD_MPS**2)
+    return x, P
 
 
 @device

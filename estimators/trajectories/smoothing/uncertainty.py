@@ -12,57 +12,81 @@ The smoother takes its labels and its parameters for true. Two things it leaves 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from estimators.arrays import BoolArray, FloatArray
+from estimators.arrays import FloatArray
 from estimators.trajectories.labelling.modes import BURST, ENTRY, LEVEL_STRIDE, REDRAW
 from estimators.trajectories.smoothing.solved import Solved
 
+BURSTS = (ENTRY, BURST, REDRAW)
 _LEAST_M2 = 1e-4
 _SLOW = 1.5
 """Margin on the variance of coloured noise."""
 _RESTLESS_PER_MINUTE, _NOISE_PER_MINUTE = 1.5, 3.0
 """Beginnings of bursts up to the first are faults, from the second on they are noise."""
 _SHORTEST_S = 60.0
-_HALF_S = 60.0
+HALF_S = 60.0
 """Half of the window over which corrections are averaged."""
 _TYPICAL = 2.0
 """Share of the typical squared correction that good fixes are off by."""
 
 
-def position_variance(t: FloatArray, fixes: FloatArray, solved: Solved, colour_m: float) -> FloatArray:
+@dataclass(frozen=True, slots=True)
+class Doubt:
+    """What is added to variances because corrections may be wrong.
+
+    Attributes
+    ----------
+    share : float
+        How sure it is, from 0 to 1, that what was labelled as bursts is noise.
+    typical_m2 : float
+        Median squared correction of fixes in bursts, per axis.
+    """
+
+    share: float
+    typical_m2: float
+
+
+def share_of_doubt(duration_s: float, beginnings: int) -> float:
+    """How sure it is, from 0 to 1, that what was labelled as bursts is noise."""
+    rate = beginnings / (max(duration_s, _SHORTEST_S) / 60.0)
+    share = (rate - _RESTLESS_PER_MINUTE) / (_NOISE_PER_MINUTE - _RESTLESS_PER_MINUTE)
+    return float(np.clip(share, 0.0, 1.0))
+
+
+def corrections(fixes: FloatArray, solved: Solved) -> FloatArray:
+    """Squared corrections of fixes in bursts, per axis, shape (m,); 0 elsewhere."""
+    off = fixes - solved.states[:, :, 0]
+    bursting = np.isin(solved.labels % LEVEL_STRIDE, BURSTS)
+    return np.where(bursting, 0.5 * np.sum(off * off, axis=1), 0.0)
+
+
+def position_variance(
+    t: FloatArray, fixes: FloatArray, solved: Solved, colour_m: float, doubt: Doubt
+) -> FloatArray:
     """Variance of the smoothed positions per axis.
 
     Parameters
     ----------
     t : ndarray, shape (m,)
+        With the rows of :data:`HALF_S` before and after those of which the variance is wanted.
     fixes : ndarray, shape (m, 2)
     solved : Solved
     colour_m : float
         Standard deviation of coloured noise.
+    doubt : Doubt
 
     Returns
     -------
     ndarray, shape (m,)
     """
     variance = np.maximum(solved.covariances[:, 0, 0], max(_SLOW * colour_m**2, _LEAST_M2))
-    kind = solved.labels % LEVEL_STRIDE
-    doubt = _share_of_doubt(t, np.isin(kind, (ENTRY, REDRAW)))
-    if doubt == 0.0:
+    if doubt.share == 0.0:
         return variance
-    off = fixes - solved.states[:, :, 0]
-    bursting = np.isin(kind, (ENTRY, BURST, REDRAW))
-    squared = np.where(bursting, 0.5 * np.sum(off * off, axis=1), 0.0)
-    first, stop = np.searchsorted(t, t - _HALF_S), np.searchsorted(t, t + _HALF_S, side="right")
+    squared = corrections(fixes, solved)
+    first, stop = np.searchsorted(t, t - HALF_S), np.searchsorted(t, t + HALF_S, side="right")
     summed = np.concatenate([[0.0], np.cumsum(squared)])
     nearby = (summed[stop] - summed[first]) / (stop - first)
-    typical = float(np.median(squared[bursting]))
-    return np.asarray(variance + doubt * (_TYPICAL * typical + nearby))
-
-
-def _share_of_doubt(t: FloatArray, begins: BoolArray) -> float:
-    """How sure it is, from 0 to 1, that what was labelled as bursts is noise."""
-    minutes = max(float(t[-1] - t[0]), _SHORTEST_S) / 60.0
-    rate = np.count_nonzero(begins) / minutes
-    share = (rate - _RESTLESS_PER_MINUTE) / (_NOISE_PER_MINUTE - _RESTLESS_PER_MINUTE)
-    return float(np.clip(share, 0.0, 1.0))
+    return np.asarray(variance + doubt.share * (_TYPICAL * doubt.typical_m2 + nearby))

@@ -1,0 +1,137 @@
+"""A cleaned track as a table, Parquet or an Arrow stream, a batch of rows at a time.
+
+Needs the extra ``plumbline[arrow]``. Columns have the names of those of CSV, and values instead of text.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from estimators.adapters.tracks.assembly import RANGES
+from estimators.adapters.tracks.cleaned import Cleaned
+from estimators.adapters.tracks.recording import FIELD, Recording
+from estimators.adapters.tracks.written_columns import Precision, positions
+from estimators.arrays import InputError
+
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer
+
+
+def stream_parquet(pairs: Iterable[tuple[Recording, Cleaned]], _precision: Precision) -> Iterator[bytes]:
+    """Write Parquet, a row group for each piece.
+
+    Parameters
+    ----------
+    pairs : iterable
+        Rows and what is said of them.
+
+    Raises
+    ------
+    InputError
+        If pyarrow is not installed.
+    """
+    _, pq = _pyarrow()
+    return _written(pairs, pq.ParquetWriter)
+
+
+def stream_arrow(pairs: Iterable[tuple[Recording, Cleaned]], _precision: Precision) -> Iterator[bytes]:
+    """Write an Arrow IPC stream, a batch for each piece; otherwise as :func:`stream_parquet`."""
+    pa, _ = _pyarrow()
+    return _written(pairs, pa.ipc.new_stream)
+
+
+def _pyarrow() -> tuple[Any, Any]:
+    try:
+        import pyarrow as pa  # noqa: PLC0415
+        import pyarrow.parquet as pq  # noqa: PLC0415
+    except ImportError as error:
+        raise InputError(
+            FIELD, "needs pyarrow to be written; install plumbline[arrow], or write CSV"
+        ) from error
+    return pa, pq
+
+
+class _Drain(io.RawIOBase):
+    """A file that is only appended to, and emptied as it grows."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._parts: list[bytes] = []
+        self._size = 0
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, data: ReadableBuffer, /) -> int:
+        part = bytes(data)
+        self._parts.append(part)
+        self._size += len(part)
+        return len(part)
+
+    def tell(self) -> int:
+        return self._size
+
+    def emptied(self) -> bytes:
+        """Take what was written since the last time."""
+        held = b"".join(self._parts)
+        self._parts.clear()
+        return held
+
+
+def _written(pairs: Iterable[tuple[Recording, Cleaned]], opened: Any) -> Iterator[bytes]:
+    drain = _Drain()
+    writer: Any = None
+    for recording, cleaned in pairs:
+        table = _table(recording, cleaned)
+        if writer is None:
+            writer = opened(drain, table.schema)
+        writer.write_table(table)
+        yield drain.emptied()
+    if writer is not None:
+        writer.close()
+    yield drain.emptied()
+
+
+def _table(recording: Recording, cleaned: Cleaned) -> Any:
+    pa, _ = _pyarrow()
+    lat, lon, height = positions(recording, cleaned)
+    columns: dict[str, Any] = {"time": _times(recording)}
+    if recording.devices:
+        columns["device"] = pa.array(recording.device_names(), type=pa.string())
+    if recording.segment is not None:
+        columns["segment"] = recording.segment
+    columns |= {"lat": _numbers(lat), "lon": _numbers(lon)}
+    if height is not None:
+        columns["height_m"] = _numbers(height)
+    columns |= {"raw_lat": _numbers(recording.lat), "raw_lon": _numbers(recording.lon)}
+    if recording.height_m is not None and cleaned.height_m is not None:
+        columns["raw_height_m"] = _numbers(recording.height_m)
+    for name in RANGES:
+        values = getattr(recording, name)
+        if name != "height_m" and values is not None:
+            columns[name] = _numbers(values)
+    if cleaned.inlier is not None:
+        columns["inlier"] = cleaned.inlier
+    if cleaned.probability is not None:
+        columns["probability"] = _numbers(cleaned.probability)
+    if cleaned.reason is not None:
+        columns["reason"] = pa.array(cleaned.reason, type=pa.string())
+    columns |= {name: _numbers(values) for name, values in cleaned.others.items()}
+    return pa.table(columns)
+
+
+def _numbers(values: Any) -> Any:
+    """Floats, with null for what is not finite."""
+    pa, _ = _pyarrow()
+    return pa.array(values, mask=~np.isfinite(values))
+
+
+def _times(recording: Recording) -> Any:
+    pa, _ = _pyarrow()
+    if recording.time.dtype.kind == "M":
+        return pa.array(recording.time.astype("datetime64[ns]"), type=pa.timestamp("ns", tz="UTC"))
+    return _numbers(recording.time)
