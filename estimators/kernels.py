@@ -2,7 +2,7 @@
 
 A *kernel* is an entry point into compiled code: it has one explicit signature, releases the GIL, is
 compiled (or read from the cache) at its first call or by :func:`warm`, and refuses other types. A
-*device* function is compiled into the kernels that call it.
+*device* function is compiled into the kernels that call it; *arithmetic* is one that makes no arrays.
 
 Numba stamps a cached kernel with the content of the one file it stands in, so that editing a device
 function in another file would leave a stale kernel behind. Here the stamp is the content of that file
@@ -197,6 +197,15 @@ def kernel(signature: object) -> Callable[[Callable[P, R]], Kernel[P, R]]:
 def device(function: Callable[P, R]) -> Callable[P, R]:
     """Declare a function that compiled code may call; it is compiled into its callers."""
     return cast("Callable[P, R]", numba.njit(nogil=True)(function))
+
+
+def arithmetic(function: Callable[P, R]) -> Callable[P, R]:
+    """Declare a :func:`device` that makes no arrays or views, and divides as IEEE 754 does.
+
+    It borrows the arrays that it is given: counting references to them costs more than a short function does.
+    """
+    options: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
+    return cast("Callable[P, R]", numba.njit(**options)(function))
 
 
 def ro(dtype: Any, ndim: int = 1) -> Any:

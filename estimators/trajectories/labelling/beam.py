@@ -20,7 +20,6 @@ from numba import types
 
 from estimators.arrays import CodeArray, FloatArray, IntArray
 from estimators.kernels import kernel, ro
-from estimators.trajectories.labelling.astray import are_twin_paths
 from estimators.trajectories.labelling.branches import BRANCHES
 from estimators.trajectories.labelling.modes import (
     ADRIFT,
@@ -39,9 +38,16 @@ from estimators.trajectories.labelling.modes import (
     WIDE,
 )
 from estimators.trajectories.labelling.priors import PRIORS, fill_prior, log_first
+from estimators.trajectories.labelling.ranking import pile, take_top
 from estimators.trajectories.labelling.settling import likeliest, settle, share_of_good, trace
-from estimators.trajectories.labelling.state import are_twins, is_near, is_too_fast
+from estimators.trajectories.labelling.state import (
+    COLUMNS,
+    WITHOUT_PATH,
+    copy_state,
+    is_too_fast,
+)
 from estimators.trajectories.labelling.steps import begin, branch, follow, look_ahead
+from estimators.trajectories.labelling.twins import count_near, find_twin
 from estimators.trajectories.labelling.velocity import take_velocity
 
 WIDTH = 40
@@ -86,9 +92,6 @@ USED, SEEN, OPEN = range(3)
         types.float64,
         types.float64,
         types.boolean,
-        types.float64[:, :, ::1],
-        types.float64[:, :, ::1],
-        types.float64[:, :, ::1],
         types.float64[:, ::1],
         types.int64[::1],
         types.float64[::1],
@@ -116,10 +119,7 @@ def label_piece(
     top_speed: float,
     total: float,
     is_last: bool,
-    x: FloatArray,
-    P: FloatArray,
-    path: FloatArray,
-    spread: FloatArray,
+    states: FloatArray,
     mode: IntArray,
     age: FloatArray,
     weight: FloatArray,
@@ -164,10 +164,10 @@ def label_piece(
         What the piece before returned; 0 at first.
     is_last : bool
         Whether the track ends with this piece.
-    x, P, path, spread, mode, age, weight, good : ndarray, shape (room, ...)
-        Hypotheses: states, covariances, paths astray and theirs, modes, ages of bursts, logarithms of
-        weights, and in column k % lag the probability of fix k to be good, as a hypothesis and those merged
-        into it see it.
+    states, mode, age, weight, good : ndarray, shape (room, ...)
+        Hypotheses: states (:mod:`estimators.trajectories.labelling.state`), modes, ages of bursts, logarithms
+        of weights, and in column k % lag the probability of fix k to be good, as a hypothesis and those
+        merged into it see it.
     course : ndarray of int64, shape (3,)
         Hypotheses in use, fixes taken in, and fixes whose labels are not settled.
     parent, kind_of : ndarray of uint8, shape (rows, room)
@@ -185,13 +185,11 @@ def label_piece(
     n = t.size
     room = weight.size
     crowd = max(_FEWEST_OF_PLACE, width // _PLACES)
-    home_x, home_P, home_path, home_spread = x, P, path, spread
-    home_mode, home_age, home_good = mode, age, good
-    x_ahead, P_ahead, path_ahead, spread_ahead = x.copy(), P.copy(), path.copy(), spread.copy()
-    new_x, new_P, new_path, new_spread = x.copy(), P.copy(), path.copy(), spread.copy()
+    home, home_mode, home_age, home_good = states, mode, age, good
+    ahead, new = states.copy(), states.copy()
     new_mode, new_age, new_weight = np.zeros(room, np.int64), np.zeros(room), np.zeros(room)
     new_good = np.ones(good.shape)
-    scores = np.empty(room * BRANCHES)
+    scores, heap = np.empty(room * BRANCHES), np.empty(room * BRANCHES, np.int64)
     kinds, origin = np.empty(room * BRANCHES, np.int64), np.empty(room * BRANCHES, np.int64)
     prior, last_dt = np.empty(PRIORS), -1.0
 
@@ -199,11 +197,9 @@ def label_piece(
         first = (NOMINAL, SPIKE, ADRIFT)
         for h in range(FIRST):
             kind = first[h]
-            mode[h] = begin(
-                kind, fixes[0, 0], fixes[0, 1], variance[0], colour, x[h], P[h], path[h], spread[h]
-            )
+            mode[h] = begin(kind, fixes[0, 0], fixes[0, 1], variance[0], colour, states, h)
             if velocity_variance[0] < math.inf:
-                take_velocity(x[h], P[h], velocity[0, 0], velocity[0, 1], velocity_variance[0])
+                take_velocity(states, h, velocity[0, 0], velocity[0, 1], velocity_variance[0])
             weight[h] = log_first(kind, rates)
             kind_of[0, h] = kind if kind != ADRIFT else ADRIFT + LEVEL_STRIDE * THROWN
             good[h, 0] = 1.0 if kind == NOMINAL else 0.0
@@ -219,16 +215,13 @@ def label_piece(
             fill_prior(dt, rates, prior)
         count = 0
         for h in range(used):
-            look_ahead(
-                mode[h], dt, manoeuvre, colour, rates, x[h], P[h], path[h], spread[h], x_ahead[h],
-                P_ahead[h], path_ahead[h], spread_ahead[h],
-            )  # fmt: skip
+            look_ahead(mode[h], dt, manoeuvre, colour, rates, states, h, ahead)
             if velocity_variance[k] < math.inf:
-                take_velocity(x_ahead[h], P_ahead[h], velocity[k, 0], velocity[k, 1], velocity_variance[k])
+                take_velocity(ahead, h, velocity[k, 0], velocity[k, 1], velocity_variance[k])
             before = count
             count = branch(
-                mode[h], age[h], weight[h], dt, east, north, variance[k], colour, prior, x_ahead[h],
-                P_ahead[h], path_ahead[h], spread_ahead[h], scores, kinds, count,
+                mode[h], age[h], weight[h], dt, east, north, variance[k], colour, prior, ahead, h, scores,
+                kinds, count,
             )  # fmt: skip
             for place in range(before, count):
                 origin[place] = h
@@ -241,62 +234,35 @@ def label_piece(
             if scores[place] >= best - (hopeless if kinds[place] in _GOING_ON else _BORN * hopeless):
                 scores[alive], kinds[alive], origin[alive] = scores[place], kinds[place], origin[place]
                 alive += 1
-        kept = 0
-        for _ in range(alive):
-            if kept == width:
-                break
-            chosen = 0
-            for place in range(1, alive):
-                if scores[place] > scores[chosen]:
-                    chosen = place
-            score = scores[chosen]
-            scores[chosen] = -math.inf
-            h = origin[chosen]
+        pile(scores, heap, alive)
+        kept, place = 0, (at + k) % lag if lag > 0 else 0
+        while alive > 0 and kept < width:
+            chosen = take_top(scores, heap, alive)
+            alive -= 1
+            score, h = scores[chosen], origin[chosen]
             kind, level = kinds[chosen] % LEVEL_STRIDE, kinds[chosen] // LEVEL_STRIDE
-            for i in range(3):
-                new_x[kept, 0, i] = x_ahead[h, 0, i]
-                new_x[kept, 1, i] = x_ahead[h, 1, i]
-                for j in range(i, 3):
-                    new_P[kept, i, j] = P_ahead[h, i, j]
-            if mode[h] == ASTRAY:
-                new_path[kept] = path_ahead[h]
-                new_spread[kept] = spread_ahead[h]
-            now = follow(
-                kind, level, mode[h], dt, east, north, variance[k], colour, new_x[kept], new_P[kept],
-                new_path[kept], new_spread[kept],
-            )  # fmt: skip
-            if top_speed < math.inf and is_too_fast(new_x[kept], new_P[kept], top_speed):
+            copy_state(ahead, h, new, kept, COLUMNS if mode[h] == ASTRAY else WITHOUT_PATH)
+            now = follow(kind, level, mode[h], dt, east, north, variance[k], colour, new, kept)
+            if top_speed < math.inf and is_too_fast(new, kept, top_speed):
                 score -= _TOO_FAST
             mass = math.exp(score - best)
             is_good = 1.0 if kind in GOOD else 0.0
-            twin, neighbours = -1, 0
-            for other in range(kept):
-                if (
-                    new_mode[other] == now
-                    and are_twins(new_x[kept], new_P[kept], new_x[other], new_P[other])
-                    and (
-                        now != ASTRAY
-                        or are_twin_paths(
-                            new_path[kept], new_spread[kept], new_path[other], new_spread[other]
-                        )
-                    )
-                ):
-                    twin = other
-                    break
-                if is_near(new_x[kept], new_P[kept], new_x[other], new_P[other]):
-                    neighbours += 1
+            twin = find_twin(new, new_mode, kept, now)
             if twin >= 0:
                 if lag > 0:
                     share = mass / (mass + new_weight[twin])
+                    seen = new_good[twin, place]
                     for row in range(lag):
-                        seen = is_good if row == (at + k) % lag else good[h, row]
-                        new_good[twin, row] += share * (seen - new_good[twin, row])
+                        new_good[twin, row] += share * (good[h, row] - new_good[twin, row])
+                    new_good[twin, place] = seen + share * (is_good - seen)
                 new_weight[twin] += mass
                 continue
-            if neighbours >= crowd:
+            if count_near(new, kept) >= crowd:
                 continue
-            for row in range(lag):
-                new_good[kept, row] = is_good if row == (at + k) % lag else good[h, row]
+            if lag > 0:
+                for row in range(lag):
+                    new_good[kept, row] = good[h, row]
+                new_good[kept, place] = is_good
             new_mode[kept] = now
             lasting = now >= BURSTING and mode[h] == now and kind != REDRAW
             new_age[kept] = age[h] + dt if lasting else 0.0
@@ -305,10 +271,7 @@ def label_piece(
             kind_of[held + k, kept] = kinds[chosen]
             kept += 1
         used = kept
-        x, new_x = new_x, x
-        P, new_P = new_P, P
-        path, new_path = new_path, path
-        spread, new_spread = new_spread, spread
+        states, new = new, states
         mode, new_mode = new_mode, mode
         age, new_age = new_age, age
         for h in range(used):
@@ -320,9 +283,7 @@ def label_piece(
     last = held + n - 1
     if not is_last:
         for h in range(used):
-            home_x[h], home_P[h], home_good[h] = x[h], P[h], good[h]
-            home_path[h], home_spread[h] = path[h], spread[h]
-            home_mode[h], home_age[h] = mode[h], age[h]
+            home[h], home_mode[h], home_age[h], home_good[h] = states[h], mode[h], age[h], good[h]
         course[OPEN] = settle(last, at - held, used, parent, kind_of, labels)
         return float(total)
     for k in range(max(0, at + n - lag), at + n):

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from estimators.arrays import FloatArray, IntArray
-from estimators.kernels import device
+from estimators.kernels import arithmetic
 from estimators.trajectories.labelling.modes import (
     ADRIFT,
     BURST,
@@ -57,7 +57,7 @@ BRANCHES = LEVELS + 8
 """The most of one hypothesis."""
 
 
-@device
+@arithmetic
 def branch_nominal(
     mode: int, weight: float, base: float, variance: float, away: float, off: float, off_place: float,
     core: float, reach: float, prior: FloatArray, scores: FloatArray, kinds: IntArray, count: int,
@@ -105,7 +105,7 @@ def branch_nominal(
     return count + 4
 
 
-@device
+@arithmetic
 def branch_burst(
     age: float, dt: float, weight: float, base: float, place: float, variance: float, off: float,
     off_place: float, core: float, reach: float, prior: FloatArray, scores: FloatArray, kinds: IntArray,
@@ -127,7 +127,7 @@ def branch_burst(
     return count + 4
 
 
-@device
+@arithmetic
 def branch_astray(
     age: float, dt: float, weight: float, path: float, place: float, variance: float, off_path: float,
     off_place: float, core: float, reach: float, prior: FloatArray, scores: FloatArray, kinds: IntArray,

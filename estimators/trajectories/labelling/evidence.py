@@ -13,7 +13,7 @@ import numpy as np
 from numba import types
 
 from estimators.arrays import CodeArray, FloatArray, IntArray
-from estimators.kernels import device, kernel, ro
+from estimators.kernels import arithmetic, kernel, ro
 from estimators.trajectories.labelling.beam import GOOD, SHORTEST_S
 from estimators.trajectories.labelling.branches import BRANCHES
 from estimators.trajectories.labelling.modes import (
@@ -31,6 +31,7 @@ from estimators.trajectories.labelling.modes import (
     THROWN,
 )
 from estimators.trajectories.labelling.priors import PRIORS, fill_prior, log_first
+from estimators.trajectories.labelling.state import COLUMNS
 from estimators.trajectories.labelling.steps import begin, branch, follow, look_ahead
 from estimators.trajectories.labelling.velocity import take_velocity
 
@@ -79,15 +80,14 @@ def judge_labels(
     float
         Far below zero if the labels cannot follow one another.
     """
-    x, P, path, spread = np.zeros((2, 3)), np.zeros((3, 3)), np.zeros((2, 2)), np.zeros(3)
-    x_ahead, P_ahead, path_ahead, spread_ahead = x.copy(), P.copy(), path.copy(), spread.copy()
+    state, ahead = np.zeros((1, COLUMNS)), np.zeros((1, COLUMNS))
     scores, kinds, prior = np.empty(BRANCHES), np.empty(BRANCHES, np.int64), np.empty(PRIORS)
     first = labels[0] % LEVEL_STRIDE
     if first not in (SPIKE, ADRIFT):
         first = NOMINAL
-    mode = begin(first, fixes[0, 0], fixes[0, 1], variance[0], colour, x, P, path, spread)
+    mode = begin(first, fixes[0, 0], fixes[0, 1], variance[0], colour, state, 0)
     if velocity_variance[0] < math.inf:
-        take_velocity(x, P, velocity[0, 0], velocity[0, 1], velocity_variance[0])
+        take_velocity(state, 0, velocity[0, 0], velocity[0, 1], velocity_variance[0])
     resolved[0] = first if first != ADRIFT else ADRIFT + LEVEL_STRIDE * THROWN
     total, age, last_dt = log_first(first, rates), 0.0, -1.0
     for k in range(1, t.size):
@@ -95,32 +95,30 @@ def judge_labels(
         if dt != last_dt:
             last_dt = dt
             fill_prior(dt, rates, prior)
-        look_ahead(
-            mode, dt, manoeuvre, colour, rates, x, P, path, spread, x_ahead, P_ahead, path_ahead, spread_ahead
-        )
+        look_ahead(mode, dt, manoeuvre, colour, rates, state, 0, ahead)
         if velocity_variance[k] < math.inf:
-            take_velocity(x_ahead, P_ahead, velocity[k, 0], velocity[k, 1], velocity_variance[k])
+            take_velocity(ahead, 0, velocity[k, 0], velocity[k, 1], velocity_variance[k])
         count = branch(
-            mode, age, 0.0, dt, fixes[k, 0], fixes[k, 1], variance[k], colour, prior, x_ahead, P_ahead,
-            path_ahead, spread_ahead, scores, kinds, 0,
+            mode, age, 0.0, dt, fixes[k, 0], fixes[k, 1], variance[k], colour, prior, ahead, 0, scores, kinds,
+            0,
         )  # fmt: skip
         chosen = _choose(labels[k], mode, scores, kinds, count)
         if chosen < 0:
             return IMPOSSIBLE
         total += scores[chosen]
         resolved[k] = kinds[chosen]
-        x[:], P[:], path[:], spread[:] = x_ahead, P_ahead, path_ahead, spread_ahead
         kind = kinds[chosen] % LEVEL_STRIDE
         now = follow(
-            kind, kinds[chosen] // LEVEL_STRIDE, mode, dt, fixes[k, 0], fixes[k, 1], variance[k], colour, x,
-            P, path, spread,
+            kind, kinds[chosen] // LEVEL_STRIDE, mode, dt, fixes[k, 0], fixes[k, 1], variance[k], colour,
+            ahead, 0,
         )  # fmt: skip
+        state, ahead = ahead, state
         age = age + dt if now >= BURSTING and now == mode and kind != REDRAW else 0.0
         mode = now
     return float(total)
 
 
-@device
+@arithmetic
 def _choose(label: int, mode: int, scores: FloatArray, kinds: IntArray, count: int) -> int:
     """Find the branch that a label means; -1 if there is none."""
     for at in range(count):

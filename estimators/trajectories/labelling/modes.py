@@ -29,7 +29,7 @@ from __future__ import annotations
 
 import math
 
-from estimators.kernels import device
+from estimators.kernels import arithmetic
 
 NOMINAL, WIDE, SPIKE, ENTRY, BURST, REDRAW, EXIT, TELEPORT, MISSING, ADRIFT = range(10)
 """Kinds of fixes; ``MISSING`` is a row that measures nothing, known before."""
@@ -67,25 +67,25 @@ _SETTLED_S, _STEPS_OF_AGE = 300.0, 50.0
 """Ages at which a stray path ends by one per second more than a young one: seconds, and steps on top."""
 
 
-@device
+@arithmetic
 def log_normal(squared: float, variance: float) -> float:
     """Ln density of a place so far (squared) from its mean; two axes of equal variance."""
     return -math.log(2.0 * math.pi * variance) - 0.5 * squared / variance
 
 
-@device
+@arithmetic
 def log_anywhere(squared: float, core: float, reach: float) -> float:
     """Ln of the scale-free density f; ``core`` is rho^2, ``reach`` is ln(pi ln(1 + R_m^2 / rho^2))."""
     return -math.log(squared + core) - reach
 
 
-@device
+@arithmetic
 def exit_rate(age_s: float) -> float:
     """Rate per second at which a burst of an age ends: the longer it lasts the longer it will, up to 15 s."""
     return max(1.5 / (10.0 + age_s), 1.0 / 15.0)
 
 
-@device
+@arithmetic
 def return_rate(age_s: float, step_s: float) -> float:
     """Rate per second at which a stray path ends: like a burst, but none lasts.
 
@@ -95,13 +95,13 @@ def return_rate(age_s: float, step_s: float) -> float:
     return exit_rate(age_s) + age_s / (_SETTLED_S + _STEPS_OF_AGE * step_s)
 
 
-@device
+@arithmetic
 def hurry(manoeuvre: float) -> float:
     """Spectral density of the acceleration while a track manoeuvres."""
     return max(_HURRY_FACTOR * manoeuvre, _LEAST_HURRY)
 
 
-@device
+@arithmetic
 def bias_walk(bias_squared: float, colour: float, walk: float, growth: float) -> float:
     """Variance per second by which the bias of a burst walks; ``walk`` in m/sqrt(s), ``growth`` of itself."""
     return walk * walk + growth * growth * bias_squared + 2.0 * colour * colour / COLOUR_TIME_S

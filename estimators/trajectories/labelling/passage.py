@@ -10,6 +10,7 @@ import numpy as np
 
 from estimators.arrays import FloatArray
 from estimators.trajectories.labelling.beam import FIRST, HOPELESS, OPEN, WIDTH, label_piece
+from estimators.trajectories.labelling.state import COLUMNS
 from estimators.trajectories.parameters import TrackParameters
 
 
@@ -65,8 +66,7 @@ class Passage:
         self._parameters, self._rates = parameters, parameters.rates.as_array()
         self._lag, self._width, self._hopeless, self._top_speed = lag, width, hopeless, top_speed
         room = max(width, FIRST)
-        self._x, self._P = np.zeros((room, 2, 3)), np.zeros((room, 3, 3))
-        self._path, self._spread = np.zeros((room, 2, 2)), np.zeros((room, 3))
+        self._states = np.zeros((room, COLUMNS))
         self._mode, self._age = np.zeros(room, dtype=np.int64), np.zeros(room)
         self._weight, self._good = np.zeros(room), np.ones((room, max(lag, 1)))
         self._course = np.zeros(3, dtype=np.int64)
@@ -115,10 +115,7 @@ class Passage:
             self._top_speed,
             self.evidence,
             is_last,
-            self._x,
-            self._P,
-            self._path,
-            self._spread,
+            self._states,
             self._mode,
             self._age,
             self._weight,

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from estimators.arrays import FloatArray
-from estimators.kernels import device
+from estimators.kernels import arithmetic
 from estimators.trajectories.labelling.modes import ADRIFT, LEVELS, SPIKE
 
 (
@@ -27,7 +27,7 @@ _ASTRAY_AT_FIRST = 0.02
 """Probability that a track begins with a fault that lasts."""
 
 
-@device
+@arithmetic
 def fill_prior(dt: float, rates: FloatArray, prior: FloatArray) -> None:
     """Logarithms of priors for fixes a step apart."""
     enter = -math.expm1(-rates[R_ENTRY] * dt)
@@ -51,7 +51,7 @@ def fill_prior(dt: float, rates: FloatArray, prior: FloatArray) -> None:
     prior[NEW_OFFSET] = math.log(redraw)
 
 
-@device
+@arithmetic
 def log_first(kind: int, rates: FloatArray) -> float:
     """Ln prior of what the first fix is."""
     if kind == ADRIFT:

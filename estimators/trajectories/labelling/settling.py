@@ -7,10 +7,10 @@ import math
 import numpy as np
 
 from estimators.arrays import CodeArray, FloatArray
-from estimators.kernels import device
+from estimators.kernels import arithmetic, device
 
 
-@device
+@arithmetic
 def trace(last: int, h: int, base: int, parent: CodeArray, kind_of: CodeArray, labels: CodeArray) -> None:
     """Write the labels that led to a hypothesis; ``base`` is the fix of the first row."""
     for row in range(last, -1, -1):
@@ -40,7 +40,7 @@ def settle(last: int, base: int, used: int, parent: CodeArray, kind_of: CodeArra
     return last - row
 
 
-@device
+@arithmetic
 def likeliest(used: int, weight: FloatArray) -> tuple[int, float]:
     """Likeliest hypothesis, and the weight of all in units of its own."""
     h = 0
@@ -53,7 +53,7 @@ def likeliest(used: int, weight: FloatArray) -> tuple[int, float]:
     return h, mass
 
 
-@device
+@arithmetic
 def share_of_good(row: int, used: int, weight: FloatArray, good: FloatArray) -> float:
     """Probability that a fix was good, over the hypotheses of a later one."""
     held, total = 0.0, 0.0

@@ -1,130 +1,121 @@
-"""The state of a hypothesis: position, velocity and bias in two axes that share one covariance."""
+"""The state of a hypothesis, a row of an array: position, velocity and bias in two axes, and one covariance.
+
+Both axes share the covariance of position (P), velocity (V) and bias (B). A hypothesis that is astray has the
+path of its fixes in the same row (:mod:`estimators.trajectories.labelling.astray`). The functions take the
+array and the number of the row: views of rows would cost more than what is done to them.
+"""
 
 from __future__ import annotations
 
 import math
 
 from estimators.arrays import FloatArray
-from estimators.kernels import device
+from estimators.kernels import arithmetic
 
-TWIN = 0.2
-"""States closer than this, in variances, have the same future."""
-TWIN_SPREAD = 0.5
-_NEAR = 2.0
-"""In variances of their difference, states closer than this are of the same place."""
-LEAST_VARIANCE = 1e-6
+(
+    EAST, NORTH, EAST_MPS, NORTH_MPS, EAST_BIAS, NORTH_BIAS, PP, PV, PB, VV, VB, BB,
+    PATH_EAST, PATH_NORTH, PATH_EAST_MPS, PATH_NORTH_MPS, PATH_PP, PATH_PV, PATH_VV,
+) = range(19)  # fmt: skip
+"""Columns of a state."""
+COLUMNS = 19
+WITHOUT_PATH = PATH_EAST
+"""Columns of a state that has no path of its own."""
 
 
-@device
+@arithmetic
 def predict(
-    x: FloatArray, P: FloatArray, dt: float, manoeuvre: float, keep: float, walk: float,
-    ahead: FloatArray, spread: FloatArray,
-) -> None:  # fmt: skip
-    """Move a state on by ``dt`` seconds: white acceleration, the bias times ``keep`` plus a variance.
-
-    Only the upper triangles of covariances are read and written.
-    """
-    for axis in range(2):
-        ahead[axis, 0] = x[axis, 0] + dt * x[axis, 1]
-        ahead[axis, 1] = x[axis, 1]
-        ahead[axis, 2] = keep * x[axis, 2]
-    spread[0, 0] = P[0, 0] + 2.0 * dt * P[0, 1] + dt * dt * P[1, 1] + manoeuvre * dt * dt * dt / 3.0
-    spread[0, 1] = P[0, 1] + dt * P[1, 1] + manoeuvre * dt * dt / 2.0
-    spread[1, 1] = P[1, 1] + manoeuvre * dt
-    spread[0, 2] = keep * (P[0, 2] + dt * P[1, 2])
-    spread[1, 2] = keep * P[1, 2]
-    spread[2, 2] = keep * keep * P[2, 2] + walk
+    s: FloatArray, h: int, dt: float, manoeuvre: float, keep: float, walk: float, ahead: FloatArray
+) -> None:
+    """Move a state on by ``dt`` seconds: white acceleration, the bias times ``keep`` plus a variance."""
+    ahead[h, EAST] = s[h, EAST] + dt * s[h, EAST_MPS]
+    ahead[h, NORTH] = s[h, NORTH] + dt * s[h, NORTH_MPS]
+    ahead[h, EAST_MPS] = s[h, EAST_MPS]
+    ahead[h, NORTH_MPS] = s[h, NORTH_MPS]
+    ahead[h, EAST_BIAS] = keep * s[h, EAST_BIAS]
+    ahead[h, NORTH_BIAS] = keep * s[h, NORTH_BIAS]
+    ahead[h, PP] = s[h, PP] + 2.0 * dt * s[h, PV] + dt * dt * s[h, VV] + manoeuvre * dt * dt * dt / 3.0
+    ahead[h, PV] = s[h, PV] + dt * s[h, VV] + manoeuvre * dt * dt / 2.0
+    ahead[h, VV] = s[h, VV] + manoeuvre * dt
+    ahead[h, PB] = keep * (s[h, PB] + dt * s[h, VB])
+    ahead[h, VB] = keep * s[h, VB]
+    ahead[h, BB] = keep * keep * s[h, BB] + walk
 
 
-@device
-def update(x: FloatArray, P: FloatArray, east: float, north: float, variance: float) -> None:
-    """Take in a fix of position plus bias; upper triangle of P."""
-    g0 = P[0, 0] + P[0, 2]
-    g1 = P[0, 1] + P[1, 2]
-    g2 = P[0, 2] + P[2, 2]
+@arithmetic
+def update(s: FloatArray, h: int, east: float, north: float, variance: float) -> None:
+    """Take in a fix of position plus bias."""
+    g0 = s[h, PP] + s[h, PB]
+    g1 = s[h, PV] + s[h, VB]
+    g2 = s[h, PB] + s[h, BB]
     total = max(g0 + g2, 0.0) + variance
     for axis in range(2):
-        off = ((east if axis == 0 else north) - x[axis, 0] - x[axis, 2]) / total
-        x[axis, 0] += g0 * off
-        x[axis, 1] += g1 * off
-        x[axis, 2] += g2 * off
-    P[0, 0] -= g0 * g0 / total
-    P[0, 1] -= g0 * g1 / total
-    P[0, 2] -= g0 * g2 / total
-    P[1, 1] -= g1 * g1 / total
-    P[1, 2] -= g1 * g2 / total
-    P[2, 2] -= g2 * g2 / total
+        off = ((east if axis == 0 else north) - s[h, EAST + axis] - s[h, EAST_BIAS + axis]) / total
+        s[h, EAST + axis] += g0 * off
+        s[h, EAST_MPS + axis] += g1 * off
+        s[h, EAST_BIAS + axis] += g2 * off
     # Rounding after a long step must not leave a variance below zero.
-    for k in range(3):
-        P[k, k] = max(P[k, k], 0.0)
+    s[h, PP] = max(s[h, PP] - g0 * g0 / total, 0.0)
+    s[h, PV] -= g0 * g1 / total
+    s[h, PB] -= g0 * g2 / total
+    s[h, VV] = max(s[h, VV] - g1 * g1 / total, 0.0)
+    s[h, VB] -= g1 * g2 / total
+    s[h, BB] = max(s[h, BB] - g2 * g2 / total, 0.0)
 
 
-@device
-def swerve(P: FloatArray, dt: float, variance: float) -> None:
+@arithmetic
+def swerve(s: FloatArray, h: int, dt: float, variance: float) -> None:
     """Let the velocity have jumped a step ago, by a variance."""
-    P[0, 0] += dt * dt * variance
-    P[0, 1] += dt * variance
-    P[1, 1] += variance
+    s[h, PP] += dt * dt * variance
+    s[h, PV] += dt * variance
+    s[h, VV] += variance
 
 
-@device
-def forget_bias(x: FloatArray, P: FloatArray, variance: float) -> None:
+@arithmetic
+def forget_bias(s: FloatArray, h: int, variance: float) -> None:
     """Give the state a fresh bias of mean 0."""
-    for axis in range(2):
-        x[axis, 2] = 0.0
-    P[0, 2] = 0.0
-    P[1, 2] = 0.0
-    P[2, 2] = variance
+    s[h, EAST_BIAS] = 0.0
+    s[h, NORTH_BIAS] = 0.0
+    s[h, PB] = 0.0
+    s[h, VB] = 0.0
+    s[h, BB] = variance
 
 
-@device
-def take_for_bias(x: FloatArray, P: FloatArray, east: float, north: float, variance: float) -> None:
+@arithmetic
+def take_for_bias(s: FloatArray, h: int, east: float, north: float, variance: float) -> None:
     """Let the bias be all that a fix is off, whatever it was before."""
-    x[0, 2] = east - x[0, 0]
-    x[1, 2] = north - x[1, 0]
-    P[0, 2] = -P[0, 0]
-    P[1, 2] = -P[0, 1]
-    P[2, 2] = P[0, 0] + variance
+    s[h, EAST_BIAS] = east - s[h, EAST]
+    s[h, NORTH_BIAS] = north - s[h, NORTH]
+    s[h, PB] = -s[h, PP]
+    s[h, VB] = -s[h, PV]
+    s[h, BB] = s[h, PP] + variance
 
 
-@device
+@arithmetic
 def start_at(
-    x: FloatArray, P: FloatArray, east: float, north: float, variance: float, colour: float, velocity: float
+    s: FloatArray, h: int, east: float, north: float, variance: float, colour: float, velocity: float
 ) -> None:
     """Begin at a fix, with nothing known but it and the variance of velocities."""
     squared = colour * colour
-    x[0, 0] = east
-    x[1, 0] = north
-    for axis in range(2):
-        x[axis, 1] = 0.0
-        x[axis, 2] = 0.0
-    P[0, 0] = variance + squared
-    P[0, 1] = 0.0
-    P[1, 1] = velocity
-    P[0, 2] = -squared
-    P[1, 2] = 0.0
-    P[2, 2] = squared
+    s[h, EAST] = east
+    s[h, NORTH] = north
+    for column in range(EAST_MPS, PP):
+        s[h, column] = 0.0
+    s[h, PP] = variance + squared
+    s[h, PV] = 0.0
+    s[h, VV] = velocity
+    s[h, PB] = -squared
+    s[h, VB] = 0.0
+    s[h, BB] = squared
 
 
-@device
-def is_near(x: FloatArray, P: FloatArray, other: FloatArray, other_P: FloatArray) -> bool:
-    """Whether two states are of the same place, as far as they know."""
-    apart = (x[0, 0] - other[0, 0]) ** 2 + (x[1, 0] - other[1, 0]) ** 2
-    return bool(apart < _NEAR * (P[0, 0] + other_P[0, 0]))
+@arithmetic
+def copy_state(s: FloatArray, h: int, out: FloatArray, to: int, columns: int) -> None:
+    """Copy the first so many columns of a state."""
+    for column in range(columns):
+        out[to, column] = s[h, column]
 
 
-@device
-def are_twins(x: FloatArray, P: FloatArray, other: FloatArray, other_P: FloatArray) -> bool:
-    """Whether two states are so alike that only the likelier of them need be followed."""
-    for k in range(3):
-        limit = TWIN * min(P[k, k], other_P[k, k]) + LEAST_VARIANCE
-        apart = (x[0, k] - other[0, k]) ** 2 + (x[1, k] - other[1, k]) ** 2
-        if apart >= limit or abs(P[k, k] - other_P[k, k]) >= TWIN_SPREAD * other_P[k, k]:
-            return False
-    return True
-
-
-@device
-def is_too_fast(x: FloatArray, P: FloatArray, top_speed: float) -> bool:
+@arithmetic
+def is_too_fast(s: FloatArray, h: int, top_speed: float) -> bool:
     """Whether a state moves faster than the track can, by more than three standard deviations."""
-    return math.hypot(x[0, 1], x[1, 1]) > top_speed + 3.0 * math.sqrt(P[1, 1])
+    return math.hypot(s[h, EAST_MPS], s[h, NORTH_MPS]) > top_speed + 3.0 * math.sqrt(s[h, VV])

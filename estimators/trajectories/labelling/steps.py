@@ -1,7 +1,6 @@
 """One step of one hypothesis: foretell it, say what may follow, and follow one of that.
 
-A hypothesis is a state (position, velocity, bias) with its covariance, and while it is astray the path that
-the fixes follow, with its covariance.
+A hypothesis is a row of states (:mod:`estimators.trajectories.labelling.state`), and a mode.
 """
 
 from __future__ import annotations
@@ -9,7 +8,7 @@ from __future__ import annotations
 import math
 
 from estimators.arrays import FloatArray, IntArray
-from estimators.kernels import device
+from estimators.kernels import arithmetic
 from estimators.trajectories.labelling.astray import UNLIKE, leave_track, move_path, start_path, take_for_path
 from estimators.trajectories.labelling.branches import branch_astray, branch_burst, branch_nominal
 from estimators.trajectories.labelling.modes import (
@@ -39,6 +38,17 @@ from estimators.trajectories.labelling.modes import (
 )
 from estimators.trajectories.labelling.priors import R_GROWTH, R_WALK
 from estimators.trajectories.labelling.state import (
+    BB,
+    EAST,
+    EAST_BIAS,
+    NORTH,
+    NORTH_BIAS,
+    PATH_EAST,
+    PATH_NORTH,
+    PATH_PP,
+    PB,
+    PP,
+    VV,
     forget_bias,
     predict,
     start_at,
@@ -51,63 +61,58 @@ _UNKNOWN_M = 1e3
 """Standard deviation of the position where the first fix is no good."""
 
 
-@device
-def begin(
-    kind: int, east: float, north: float, variance: float, colour: float, x: FloatArray, P: FloatArray,
-    path: FloatArray, spread: FloatArray,
-) -> int:  # fmt: skip
+@arithmetic
+def begin(kind: int, east: float, north: float, variance: float, colour: float, s: FloatArray, h: int) -> int:
     """Begin at a first fix that is nominal, a spike or adrift; returns the mode."""
-    start_at(x, P, east, north, variance, colour, STILL_SPREAD_MPS**2)
+    start_at(s, h, east, north, variance, colour, STILL_SPREAD_MPS**2)
     if kind == NOMINAL:
         return 0
-    P[0, 0] += _UNKNOWN_M**2
+    s[h, PP] += _UNKNOWN_M**2
     if kind == SPIKE:
         return 0
-    forget_bias(x, P, 0.0)
-    start_path(x, P, east, north, variance, path, spread)
+    forget_bias(s, h, 0.0)
+    start_path(s, h, east, north, variance)
     return ASTRAY
 
 
-@device
+@arithmetic
 def look_ahead(
-    mode: int, dt: float, manoeuvre: float, colour: float, rates: FloatArray, x: FloatArray, P: FloatArray,
-    path: FloatArray, spread: FloatArray, x_ahead: FloatArray, P_ahead: FloatArray, path_ahead: FloatArray,
-    spread_ahead: FloatArray,
+    mode: int, dt: float, manoeuvre: float, colour: float, rates: FloatArray, s: FloatArray, h: int,
+    ahead: FloatArray,
 ) -> None:  # fmt: skip
-    """Foretell a hypothesis ``dt`` seconds ahead."""
+    """Foretell a hypothesis ``dt`` seconds ahead, in the same row of another array."""
     if mode == BURSTING:
-        bias = x[0, 2] ** 2 + x[1, 2] ** 2
+        bias = s[h, EAST_BIAS] ** 2 + s[h, NORTH_BIAS] ** 2
         walk = dt * bias_walk(bias, colour, rates[R_WALK], rates[R_GROWTH])
-        predict(x, P, dt, manoeuvre, 1.0, walk, x_ahead, P_ahead)
+        predict(s, h, dt, manoeuvre, 1.0, walk, ahead)
     elif mode == ASTRAY:
-        predict(x, P, dt, manoeuvre, 1.0, 0.0, x_ahead, P_ahead)
-        move_path(path, spread, dt, hurry(manoeuvre), path_ahead, spread_ahead)
+        predict(s, h, dt, manoeuvre, 1.0, 0.0, ahead)
+        move_path(s, h, dt, hurry(manoeuvre), ahead)
     else:
         fade = math.exp(-dt / COLOUR_TIME_S)
         density = hurry(manoeuvre) if mode == RESTLESS else manoeuvre
-        predict(x, P, dt, density, fade, colour * colour * (1.0 - fade * fade), x_ahead, P_ahead)
+        predict(s, h, dt, density, fade, colour * colour * (1.0 - fade * fade), ahead)
 
 
-@device
+@arithmetic
 def branch(
     mode: int, age: float, weight: float, dt: float, east: float, north: float, variance: float,
-    colour: float, prior: FloatArray, x: FloatArray, P: FloatArray, path: FloatArray, spread: FloatArray,
-    scores: FloatArray, kinds: IntArray, count: int,
+    colour: float, prior: FloatArray, s: FloatArray, h: int, scores: FloatArray, kinds: IntArray, count: int,
 ) -> int:  # fmt: skip
     """Append what a hypothesis, foretold, may become at a fix; returns how many branches there are."""
-    place = max(P[0, 0], 0.0)
-    base = max(place + 2.0 * P[0, 2] + P[2, 2], 0.0)
-    off_place = (east - x[0, 0]) ** 2 + (north - x[1, 0]) ** 2
+    place = max(s[h, PP], 0.0)
+    base = max(place + 2.0 * s[h, PB] + s[h, BB], 0.0)
+    off_place = (east - s[h, EAST]) ** 2 + (north - s[h, NORTH]) ** 2
     squared_colour = colour * colour
     core = 9.0 * (variance + squared_colour) + place
     reach = math.log(math.pi * math.log1p(REACH_M * REACH_M / core))
     if mode == ASTRAY:
-        off_path = (east - path[0, 0]) ** 2 + (north - path[1, 0]) ** 2
+        off_path = (east - s[h, PATH_EAST]) ** 2 + (north - s[h, PATH_NORTH]) ** 2
         return branch_astray(
-            age, dt, weight, spread[0], place + squared_colour, variance, off_path, off_place, core, reach,
-            prior, scores, kinds, count,
+            age, dt, weight, s[h, PATH_PP], place + squared_colour, variance, off_path, off_place, core,
+            reach, prior, scores, kinds, count,
         )  # fmt: skip
-    off = (east - x[0, 0] - x[0, 2]) ** 2 + (north - x[1, 0] - x[1, 2]) ** 2
+    off = (east - s[h, EAST] - s[h, EAST_BIAS]) ** 2 + (north - s[h, NORTH] - s[h, NORTH_BIAS]) ** 2
     if mode == BURSTING:
         return branch_burst(
             age, dt, weight, base, place + squared_colour, variance, off, off_place, core, reach, prior,
@@ -119,47 +124,47 @@ def branch(
     )  # fmt: skip
 
 
-@device
+@arithmetic
 def follow(
     kind: int, level: int, mode: int, dt: float, east: float, north: float, variance: float, colour: float,
-    x: FloatArray, P: FloatArray, path: FloatArray, spread: FloatArray,
+    s: FloatArray, h: int,
 ) -> int:  # fmt: skip
     """Follow a branch from a foretold hypothesis, in place; returns the mode after it."""
     if kind == NOMINAL:
-        update(x, P, east, north, variance if level == HURRIED else variance * LEVEL_FACTOR**level)
+        update(s, h, east, north, variance if level == HURRIED else variance * LEVEL_FACTOR**level)
         return level
     if kind == WIDE:
-        update(x, P, east, north, WIDE_FACTOR * variance * LEVEL_FACTOR**level)
+        update(s, h, east, north, WIDE_FACTOR * variance * LEVEL_FACTOR**level)
         return level
     if kind == BURST:
-        update(x, P, east, north, variance)
+        update(s, h, east, north, variance)
         return BURSTING
     if kind == ADRIFT:
         if level == DRAWN_AWAY:
-            leave_track(x, P, dt, path, spread)
+            leave_track(s, h, dt)
         elif level != GOES_ON:
-            start_path(x, P, east, north, variance, path, spread)
+            start_path(s, h, east, north, variance)
         if level != GOES_ON:
-            forget_bias(x, P, 0.0)
+            forget_bias(s, h, 0.0)
         if level in (GOES_ON, DRAWN_AWAY):
-            take_for_path(path, spread, east, north, variance)
+            take_for_path(s, h, east, north, variance)
         return ASTRAY
     if kind == EXIT:
-        forget_bias(x, P, colour * colour)
-        update(x, P, east, north, variance)
+        forget_bias(s, h, colour * colour)
+        update(s, h, east, north, variance)
         return 0
     if kind == ENTRY and mode == ASTRAY:
-        take_for_path(path, spread, east, north, variance)
-        take_for_bias(x, P, path[0, 0], path[1, 0], spread[0])
+        take_for_path(s, h, east, north, variance)
+        take_for_bias(s, h, s[h, PATH_EAST], s[h, PATH_NORTH], s[h, PATH_PP])
         return BURSTING
     if kind in (ENTRY, REDRAW):
-        take_for_bias(x, P, east, north, variance)
+        take_for_bias(s, h, east, north, variance)
         return BURSTING
     if kind == TELEPORT and level == SWERVED:
-        swerve(P, dt, UNLIKE)
-        update(x, P, east, north, variance)
+        swerve(s, h, dt, UNLIKE)
+        update(s, h, east, north, variance)
         return RESTLESS
     if kind == TELEPORT:
-        start_at(x, P, east, north, variance, colour, P[1, 1] + UNLIKE)
+        start_at(s, h, east, north, variance, colour, s[h, VV] + UNLIKE)
         return 0
     return mode

@@ -8,31 +8,40 @@ talk for minutes, and outweigh the fixes.
 from __future__ import annotations
 
 from estimators.arrays import FloatArray
-from estimators.kernels import device
+from estimators.kernels import arithmetic
+from estimators.trajectories.labelling.state import (
+    BB,
+    EAST,
+    EAST_BIAS,
+    EAST_MPS,
+    NORTH_MPS,
+    PB,
+    PP,
+    PV,
+    VB,
+    VV,
+)
 
 _GATE = 9.21
 """99 % of chi-square with two degrees of freedom."""
 
 
-@device
-def take_velocity(x: FloatArray, P: FloatArray, east: float, north: float, variance: float) -> None:
-    """Take in a velocity, unless it is too far from that of the state.
-
-    Only the upper triangle of P is read and written.
-    """
-    total = P[1, 1] + variance
-    off_east, off_north = east - x[0, 1], north - x[1, 1]
+@arithmetic
+def take_velocity(s: FloatArray, h: int, east: float, north: float, variance: float) -> None:
+    """Take in a velocity, unless it is too far from that of the state."""
+    total = s[h, VV] + variance
+    off_east, off_north = east - s[h, EAST_MPS], north - s[h, NORTH_MPS]
     if off_east * off_east + off_north * off_north > _GATE * total:
         return
-    g0, g1, g2 = P[0, 1], P[1, 1], P[1, 2]
+    g0, g1, g2 = s[h, PV], s[h, VV], s[h, VB]
     for axis in range(2):
         off = (off_east if axis == 0 else off_north) / total
-        x[axis, 0] += g0 * off
-        x[axis, 1] += g1 * off
-        x[axis, 2] += g2 * off
-    P[0, 0] = max(P[0, 0] - g0 * g0 / total, 0.0)
-    P[0, 1] -= g0 * g1 / total
-    P[0, 2] -= g0 * g2 / total
-    P[1, 1] = max(P[1, 1] - g1 * g1 / total, 0.0)
-    P[1, 2] -= g1 * g2 / total
-    P[2, 2] = max(P[2, 2] - g2 * g2 / total, 0.0)
+        s[h, EAST + axis] += g0 * off
+        s[h, EAST_MPS + axis] += g1 * off
+        s[h, EAST_BIAS + axis] += g2 * off
+    s[h, PP] = max(s[h, PP] - g0 * g0 / total, 0.0)
+    s[h, PV] -= g0 * g1 / total
+    s[h, PB] -= g0 * g2 / total
+    s[h, VV] = max(s[h, VV] - g1 * g1 / total, 0.0)
+    s[h, VB] -= g1 * g2 / total
+    s[h, BB] = max(s[h, BB] - g2 * g2 / total, 0.0)

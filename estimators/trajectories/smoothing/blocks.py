@@ -61,7 +61,7 @@ class Smoothing:
         self._t, self._fixes, self._reported, self._labels = t, fixes, reported, labels
         self._parameters = parameters
         self._velocity, self._velocity_variance = velocity, velocity_variance
-        self._begins: list[tuple[FloatArray, FloatArray, int]] = []
+        self._begins: list[tuple[FloatArray, int]] = []
         # Smoothed states of first rows; of what comes behind the last block there is none.
         self._firsts: dict[int, tuple[FloatArray, FloatArray]] = {}
         self._solved: dict[int, Solved] = {}
@@ -119,14 +119,14 @@ class Smoothing:
         # A track of nothing but faults begins at the last of its rows.
         first = int(np.argmax(told)) if told.any() else self._t.size - 1
         east, north = self._fixes[first : first + 1][0].tolist()
-        x, P = begin(east, north, self._parameters.colour_m)
+        state = begin(east, north, self._parameters.colour_m)
         lasting = 0
         for number in range(self.blocks):
-            self._begins.append((x.copy(), P.copy(), lasting))
+            self._begins.append((state.copy(), lasting))
             if number + 1 < self.blocks:
                 part = self._piece(number, with_next=False)
                 lasting = self._run(
-                    part, self._variance(part), x, P, lasting, number == 0, False, _NOTHING, _NOTHING_P
+                    part, self._variance(part), state, lasting, number == 0, False, _NOTHING, _NOTHING_P
                 )
 
     def _smooth(self, number: int) -> Solved:
@@ -137,8 +137,8 @@ class Smoothing:
         is_last = number + 1 == self.blocks
         if not is_last:
             states[-1], covariances[-1] = self._firsts[number + 1]
-        x, P, lasting = self._begins[number]
-        self._run(part, variance, x.copy(), P.copy(), lasting, number == 0, is_last, states, covariances)
+        state, lasting = self._begins[number]
+        self._run(part, variance, state.copy(), lasting, number == 0, is_last, states, covariances)
         own = slice(number * self.block - part.start, (number + 1) * self.block - part.start)
         return Solved(self._labels[part], variance, states, covariances).part(own)
 
@@ -146,8 +146,7 @@ class Smoothing:
         self,
         part: slice,
         variance: FloatArray,
-        x: FloatArray,
-        P: FloatArray,
+        state: FloatArray,
         lasting: int,
         is_first: bool,
         is_last: bool,
@@ -164,8 +163,7 @@ class Smoothing:
             parameters.manoeuvre,
             parameters.rates.as_array(),
             self._labels[part],
-            x,
-            P,
+            state,
             lasting,
             is_first,
             is_last,

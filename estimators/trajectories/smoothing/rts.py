@@ -12,7 +12,7 @@ import numpy as np
 from numba import types
 
 from estimators.arrays import CodeArray, FloatArray
-from estimators.kernels import device, kernel, ro
+from estimators.kernels import arithmetic, kernel, ro
 from estimators.statespace.chain import invert
 from estimators.trajectories.labelling.astray import UNLIKE
 from estimators.trajectories.labelling.modes import (
@@ -37,7 +37,25 @@ from estimators.trajectories.labelling.modes import (
     hurry,
 )
 from estimators.trajectories.labelling.priors import R_GROWTH, R_WALK
-from estimators.trajectories.labelling.state import start_at, swerve, update
+from estimators.trajectories.labelling.state import (
+    BB,
+    COLUMNS,
+    EAST,
+    EAST_BIAS,
+    EAST_MPS,
+    NORTH_BIAS,
+    PB,
+    PP,
+    PV,
+    VB,
+    VV,
+    WITHOUT_PATH,
+    copy_state,
+    predict,
+    start_at,
+    swerve,
+    update,
+)
 from estimators.trajectories.labelling.velocity import take_velocity
 
 _FRESH = 1e10
@@ -58,7 +76,6 @@ IN_BURST, IN_HURRY = 1, 2
         ro(types.float64),
         ro(types.uint8),
         types.float64[:, ::1],
-        types.float64[:, ::1],
         types.int64,
         types.boolean,
         types.boolean,
@@ -76,8 +93,7 @@ def smooth_piece(
     manoeuvre: float,
     rates: FloatArray,
     labels: CodeArray,
-    x: FloatArray,
-    P: FloatArray,
+    state: FloatArray,
     lasting: int,
     is_first: bool,
     is_last: bool,
@@ -96,20 +112,18 @@ def smooth_piece(
         first row is the last of the piece before; unless it is the last, its last is the first of the next.
     labels : ndarray of uint8, shape (n,)
         ``MISSING`` where nothing was measured.
-    x : ndarray, shape (2, 3)
-        Position, velocity and bias, east and north, before the first row that is not yet taken in. Out: after
-        the last row.
-    P : ndarray, shape (3, 3)
-        Its covariance, of each axis; likewise.
+    state : ndarray, shape (1, 19)
+        As the columns of :mod:`estimators.trajectories.labelling.state` name it, before the first row that is
+        not yet taken in. Out: after the last row.
     lasting : int
         What lasts at the row before: ``IN_BURST``, ``IN_HURRY``, their sum or 0.
     is_first, is_last : bool
         Whether the track begins, and ends, with this piece.
     states : ndarray, shape (n, 2, 3), or none
-        Out: smoothed. In the last row, unless the piece is the last, in: the smoothed state there. Without
-        rows the piece is filtered only.
+        Out: smoothed; position, velocity and bias, east and north. In the last row, unless the piece is the
+        last, in: the smoothed state there. Without rows the piece is filtered only.
     covariances : ndarray, shape (n, 3, 3), or none
-        Likewise.
+        Likewise, of each axis.
 
     Returns
     -------
@@ -121,7 +135,7 @@ def smooth_piece(
     rows = n if smooths else 1
     filtered, filtered_P = np.zeros((rows, 2, 3)), np.zeros((rows, 3, 3))
     ahead, ahead_P = np.zeros((rows, 2, 3)), np.zeros((rows, 3, 3))
-    keep = np.zeros(n)
+    keep, moved = np.zeros(n), np.zeros(state.shape)
     squared = colour * colour
     own = 0 if is_first else 1
     bursting, hurried = lasting & IN_BURST != 0, lasting & IN_HURRY != 0
@@ -133,7 +147,7 @@ def smooth_piece(
         elif kind == EXIT or (kind == TELEPORT and level != SWERVED):
             fade, walk, bursting = 0.0, squared, False
         elif bursting:
-            bias = x[0, 2] * x[0, 2] + x[1, 2] * x[1, 2]
+            bias = state[0, EAST_BIAS] ** 2 + state[0, NORTH_BIAS] ** 2
             fade, walk = 1.0, dt * bias_walk(bias, colour, rates[R_WALK], rates[R_GROWTH])
         else:
             fade = math.exp(-dt / COLOUR_TIME_S)
@@ -142,41 +156,34 @@ def smooth_piece(
         q = hurry(manoeuvre) if hurried else manoeuvre
         if kind != MISSING:
             hurried = level == HURRIED or (kind == TELEPORT and level == SWERVED)
-        for axis in range(2):
-            x[axis, 0] += dt * x[axis, 1]
-            x[axis, 2] *= fade
-        P[0, 0] += 2.0 * dt * P[0, 1] + dt * dt * P[1, 1] + q * dt * dt * dt / 3.0
-        P[0, 1] += dt * P[1, 1] + q * dt * dt / 2.0
-        P[0, 2] = fade * (P[0, 2] + dt * P[1, 2])
-        P[1, 1] += q * dt
-        P[1, 2] *= fade
-        P[2, 2] = fade * fade * P[2, 2] + walk
+        predict(state, 0, dt, q, fade, walk, moved)
         if kind == TELEPORT and level == SWERVED:
-            swerve(P, dt, UNLIKE)
+            swerve(moved, 0, dt, UNLIKE)
         elif kind == TELEPORT:
-            P[0, 0] += _FRESH
-            P[1, 1] += JUMP_SPREAD_MPS**2
+            moved[0, PP] += _FRESH
+            moved[0, VV] += JUMP_SPREAD_MPS**2
         if smooths:
-            _copy(x, P, ahead[k], ahead_P[k])
+            _write(moved, ahead[k], ahead_P[k])
         if velocity_variance[k] < math.inf:
-            take_velocity(x, P, velocity[k, 0], velocity[k, 1], velocity_variance[k])
+            take_velocity(moved, 0, velocity[k, 0], velocity[k, 1], velocity_variance[k])
         if kind not in (SPIKE, MISSING, ADRIFT):
             noise = (
                 variance[k]
                 * (1.0 if kind == TELEPORT or level == HURRIED else LEVEL_FACTOR**level)
                 * (WIDE_FACTOR if kind == WIDE else 1.0)
             )
-            update(x, P, fixes[k, 0], fixes[k, 1], noise)
+            update(moved, 0, fixes[k, 0], fixes[k, 1], noise)
         if smooths:
-            _copy(x, P, filtered[k], filtered_P[k])
+            _write(moved, filtered[k], filtered_P[k])
+        copy_state(moved, 0, state, 0, WITHOUT_PATH)
     lasting = (IN_BURST if bursting else 0) + (IN_HURRY if hurried else 0)
     if not smooths:
         return lasting
     if is_last:
-        _copy(filtered[n - 1], filtered_P[n - 1], states[n - 1], covariances[n - 1])
+        states[n - 1], covariances[n - 1] = filtered[n - 1], filtered_P[n - 1]
     inverse, factor, gain, held = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
     for k in range(n - 2, own - 1, -1):
-        _copy(filtered[k], filtered_P[k], states[k], covariances[k])
+        states[k], covariances[k] = filtered[k], filtered_P[k]
         if not invert(ahead_P[k + 1], inverse, factor):
             continue
         dt, fade = min(t[k + 1] - t[k], LONGEST_S), keep[k + 1]
@@ -208,20 +215,21 @@ def smooth_piece(
     return lasting
 
 
-def begin(east: float, north: float, colour: float) -> tuple[FloatArray, FloatArray]:
-    """State and covariance before a track that is first seen at a place."""
-    x, P = np.zeros((2, 3)), np.zeros((3, 3))
-    start_at(x, P, east, north, _FRESH, colour, STILL_SPREAD_MPS**2)
-    return x, P
+def begin(east: float, north: float, colour: float) -> FloatArray:
+    """State before a track that is first seen at a place, as :func:`smooth_piece` takes it."""
+    state: FloatArray = np.zeros((1, COLUMNS))
+    start_at(state, 0, east, north, _FRESH, colour, STILL_SPREAD_MPS**2)
+    return state
 
 
-@device
-def _copy(x: FloatArray, P: FloatArray, out: FloatArray, out_P: FloatArray) -> None:
-    """Copy a state; of the covariance the upper triangle is read and both are written."""
+@arithmetic
+def _write(state: FloatArray, x: FloatArray, P: FloatArray) -> None:
+    """Write a state as vectors and a matrix."""
     for axis in range(2):
-        for i in range(3):
-            out[axis, i] = x[axis, i]
-    for i in range(3):
-        for j in range(i, 3):
-            out_P[i, j] = P[i, j]
-            out_P[j, i] = P[i, j]
+        x[axis, 0] = state[0, EAST + axis]
+        x[axis, 1] = state[0, EAST_MPS + axis]
+        x[axis, 2] = state[0, EAST_BIAS + axis]
+    P[0, 0], P[1, 1], P[2, 2] = state[0, PP], state[0, VV], state[0, BB]
+    P[0, 1] = P[1, 0] = state[0, PV]
+    P[0, 2] = P[2, 0] = state[0, PB]
+    P[1, 2] = P[2, 1] = state[0, VB]
