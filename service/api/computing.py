@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol, TypeVar
+from typing import Any, TypeVar
 
 from fastapi import Request, Response
 
 from service.codecs.limits import UNPACKED_PER_BODY, Limits
+from service.codecs.offers import Offer
 from service.codecs.sent import Sent
 from service.compute import Compute, Patience
 from service.errors import Problem, ProblemType
@@ -17,18 +18,6 @@ from service.security.headers import PICTURE_POLICY
 from service.settings import Settings
 
 Query = TypeVar("Query")
-
-
-class AnswerForm(Protocol):
-    """What is to be known of a writer to send what it wrote."""
-
-    @property
-    def name(self) -> str:
-        """Short name, such as ``svg``."""
-
-    @property
-    def content_type(self) -> str:
-        """Media type with its parameters."""
 
 
 async def read_body(request: Request) -> bytes:
@@ -53,14 +42,14 @@ def sent_by(request: Request, body: bytes, query: Query, patience: Patience) -> 
 
 
 async def compute_answer(
-    request: Request, form: AnswerForm, watch: Stopwatch, job: Callable[[Patience], tuple[bytes, int]]
+    request: Request, form: Offer[Any], watch: Stopwatch, job: Callable[[Patience], tuple[bytes, int]]
 ) -> Response:
     """Run a job in a thread once the service is ready, and send and count what it gives.
 
     Parameters
     ----------
     request : Request
-    form : AnswerForm
+    form : Offer
         Form of the answer.
     watch : Stopwatch
         Of the phases; the job's own are told to it.

@@ -3,26 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol, TypeVar
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
 
 from service.codecs.negotiation import best_offer
 
-
-class Offer(Protocol):
-    """A format of answers."""
-
-    @property
-    def name(self) -> str:
-        """As in ``?format=``."""
-        ...
-
-    @property
-    def media_type(self) -> str:
-        """As in ``Accept``, without parameters."""
-        ...
+Name = TypeVar("Name", bound=str)
 
 
-Offered = TypeVar("Offered", bound=Offer)
+@dataclass(frozen=True, slots=True)
+class Offer(Generic[Name]):
+    """A format of answers; the tables of writers add what writes it.
+
+    Attributes
+    ----------
+    name : str
+        As in ``?format=``.
+    media_type, content_type : str
+        As in ``Accept``, without parameters, and as in the answer's ``Content-Type``.
+    """
+
+    name: Name
+    media_type: str
+    content_type: str
+
+
+Offered = TypeVar("Offered", bound=Offer[Any])
 
 
 def choose_offer(offers: Sequence[Offered], accept: str | None, asked: str | None) -> Offered:

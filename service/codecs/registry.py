@@ -11,7 +11,7 @@ from service.codecs.csv import read_csv, write_csv
 from service.codecs.figure import write_png, write_svg
 from service.codecs.json import read_json, write_json
 from service.codecs.negotiation import media_type_of
-from service.codecs.offers import choose_offer
+from service.codecs.offers import Offer, choose_offer
 from service.schemas.fields import AnswerFormat
 from service.schemas.options import AnswerQuery, FitArguments, TrendQuery
 
@@ -20,23 +20,14 @@ Write = Callable[[Trend, Columns, AnswerQuery], bytes]
 
 
 @dataclass(frozen=True, slots=True)
-class Writer:
+class Writer(Offer[AnswerFormat]):
     """A format of answers.
 
     Attributes
     ----------
-    name : str
-        As in ``?format=``.
-    media_type : str
-        As in ``Accept``, without parameters.
-    content_type : str
-        As in the answer's ``Content-Type``.
     write : callable
     """
 
-    name: AnswerFormat
-    media_type: str
-    content_type: str
     write: Write
 
 

@@ -12,7 +12,7 @@ from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any, cast
 
 from service.codecs.negotiation import media_type_of
-from service.codecs.offers import choose_offer
+from service.codecs.offers import Offer, choose_offer
 from service.schemas.batch import BatchFormat
 
 if TYPE_CHECKING:
@@ -44,26 +44,17 @@ class BatchReader:
 
 
 @dataclass(frozen=True, slots=True)
-class BatchWriter:
+class BatchWriter(Offer[BatchFormat]):
     """A format of answers.
 
     Attributes
     ----------
-    name : str
-        As in ``?format=``.
-    media_type : str
-        As in ``Accept``, without parameters.
-    content_type : str
-        As in the answer's ``Content-Type``.
     codec : str
         ``module:function`` in this package, a generator of bytes.
     is_streamed : bool
         Whether the answer begins before all series are fitted.
     """
 
-    name: BatchFormat
-    media_type: str
-    content_type: str
     codec: str
     is_streamed: bool = False
 

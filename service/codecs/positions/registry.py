@@ -11,7 +11,7 @@ from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any, cast
 
 from service.codecs.batch.registry import ARROW_FILE, ARROW_STREAM, GEOJSON, PARQUET
-from service.codecs.offers import choose_offer
+from service.codecs.offers import Offer, choose_offer
 from service.positions.prepared import Prepared, prepare_recording, prepare_table
 from service.schemas.position_query import PositionAnswerQuery, PositionFormat, PositionQuery
 
@@ -53,23 +53,16 @@ class RangeReader:
 
 
 @dataclass(frozen=True, slots=True)
-class PositionWriter:
+class PositionWriter(Offer[PositionFormat]):
     """A format of answers.
 
     Attributes
     ----------
-    name : str
-        As in ``?format=``.
-    media_type, content_type : str
-        As in ``Accept``, without parameters, and as in the answer's ``Content-Type``.
     codec : str
         ``module:function`` in this package.
     is_picture : bool
     """
 
-    name: PositionFormat
-    media_type: str
-    content_type: str
     codec: str
     is_picture: bool = False
 

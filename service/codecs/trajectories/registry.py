@@ -11,7 +11,7 @@ from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any, cast
 
 from service.codecs.batch.registry import ARROW_FILE, ARROW_STREAM, GEOJSON, PARQUET
-from service.codecs.offers import choose_offer
+from service.codecs.offers import Offer, choose_offer
 from service.errors import invalid_value
 from service.schemas.trajectories import TrackAnswerQuery, TrackFormat, TrackQuery
 
@@ -44,15 +44,11 @@ class TrackReader:
 
 
 @dataclass(frozen=True, slots=True)
-class TrackWriter:
+class TrackWriter(Offer[TrackFormat]):
     """A format of answers.
 
     Attributes
     ----------
-    name : str
-        As in ``?format=``.
-    media_type, content_type : str
-        As in ``Accept``, without parameters, and as in the answer's ``Content-Type``.
     codec : str
         ``module:function`` in this package.
     needs_moments : bool
@@ -61,9 +57,6 @@ class TrackWriter:
         Whether it shows one track.
     """
 
-    name: TrackFormat
-    media_type: str
-    content_type: str
     codec: str
     needs_moments: bool = False
     is_picture: bool = False
