@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from estimators.arrays import BoolArray, FloatArray, InputError, IntArray
+from estimators.presentation.json_values import numbers_to_json
 from estimators.result import NoFit, Points
 from estimators.trends.batch.source import Source
-from estimators.trends.presentation.json_values import numbers_to_json, time_to_json
+from estimators.trends.presentation.json_values import time_to_json
 from estimators.trends.questions.crossing import Crossing
 from estimators.trends.regimes.regime import Regime
 from estimators.trends.trend import Trend

@@ -1,6 +1,7 @@
 """How a track leaves Python."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,7 +9,8 @@ import pytest
 from estimators import NoticeCode, Track, clean_trajectory
 from estimators.geodesy.plane import Plane
 from estimators.notices import NOTICE_MEANINGS, TRACK_NOTICES
-from estimators.trajectories.presentation.words import ADVICE, WIDTH
+from estimators.presentation.text import WIDTH
+from estimators.trajectories.presentation.words import ADVICE
 from tests.trajectories.drives import MUNICH, drive, with_bursts, with_spikes
 
 TRACK = with_bursts(with_spikes(drive(8), share=0.05)).clean()
@@ -67,8 +69,9 @@ def test_the_summary_fits_80_columns_and_tells_what_matters() -> None:
 
 
 def test_the_notebook_table_is_escaped_html() -> None:
-    table = TRACK._repr_html_()
+    table = replace(TRACK, method="<script>")._repr_html_()
     assert table.startswith("<table")
+    assert "Track by &lt;script&gt;" in table
     assert "<script" not in table
 
 

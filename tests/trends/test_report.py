@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from estimators.notices import NOTICE_MEANINGS, POSITION_NOTICES, TRACK_NOTICES, NoticeCode, notice
-from estimators.trends.presentation.layout import WIDTH, to_html, to_text
+from estimators.presentation.text import WIDTH
+from estimators.trends.presentation.layout import to_html, to_text
 from estimators.trends.presentation.report import describe
 from estimators.trends.trend import RunnerUp
 from tests.trends.made import daily, made_trend

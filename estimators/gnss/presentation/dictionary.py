@@ -6,18 +6,11 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from estimators.arrays import FloatArray
 from estimators.notices import notice_to_dict
+from estimators.presentation.json_values import numbers_to_json
 
 if TYPE_CHECKING:
     from estimators.gnss.fix import Fix, Rival, Satellites
-
-
-def finite(values: FloatArray) -> list[float | None]:
-    """Floats, with None for what is not finite."""
-    return [value if math.isfinite(value) else None for value in np.asarray(values).tolist()]
 
 
 def _bound(level: float) -> float | None:
@@ -89,15 +82,15 @@ def satellites_to_dict(satellites: Satellites) -> dict[str, Any]:
         "satellite": list(satellites.name),
         "system": list(satellites.system),
         "status": list(satellites.status),
-        "fault_probability": finite(satellites.fault_probability),
-        "weight": finite(satellites.weight),
-        "residual_m": finite(satellites.residual_m),
-        "sigma_m": finite(satellites.sigma_m),
-        "statistic": finite(satellites.statistic),
+        "fault_probability": numbers_to_json(satellites.fault_probability),
+        "weight": numbers_to_json(satellites.weight),
+        "residual_m": numbers_to_json(satellites.residual_m),
+        "sigma_m": numbers_to_json(satellites.sigma_m),
+        "statistic": numbers_to_json(satellites.statistic),
         "threshold": satellites.threshold,
-        "mdb_m": finite(satellites.mdb_m),
-        "azimuth_deg": finite(satellites.azimuth_deg),
-        "elevation_deg": finite(satellites.elevation_deg),
+        "mdb_m": numbers_to_json(satellites.mdb_m),
+        "azimuth_deg": numbers_to_json(satellites.azimuth_deg),
+        "elevation_deg": numbers_to_json(satellites.elevation_deg),
         "reason": list(satellites.reason),
     }
 

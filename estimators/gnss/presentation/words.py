@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import math
-import textwrap
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from estimators.gnss.systems import SYSTEMS
 from estimators.notices import NoticeCode
+from estimators.presentation.text import WIDTH, labelled
 
 if TYPE_CHECKING:
     from estimators.gnss.fix import Fix, Integrity
 
-WIDTH = 80
 _LABEL = 13
 
 ADVICE: Mapping[NoticeCode, str] = MappingProxyType(
@@ -52,12 +51,16 @@ def fix_to_text(fix: Fix) -> str:
     spread = [math.sqrt(fix.covariance_enu_m2[k, k]) for k in range(3)]
     used = int(satellites.inlier.sum())
     lines = [f"Position by {fix.method}", "━" * WIDTH]
-    lines += _labelled("Where", f"{place.lat_deg:.7f}° {place.lon_deg:.7f}° {place.height_m:.2f} m")
-    lines += _labelled("Std. error", f"{spread[0]:.2f} m east, {spread[1]:.2f} m north, {spread[2]:.2f} m up")
-    lines += _labelled("Protection", _protection(fix.integrity))
-    lines += _labelled("Satellites", f"{used} used of {len(satellites)}; HDOP {fix.dop.horizontal:.2f}")
+    lines += labelled("Where", f"{place.lat_deg:.7f}° {place.lon_deg:.7f}° {place.height_m:.2f} m", _LABEL)
+    lines += labelled(
+        "Std. error", f"{spread[0]:.2f} m east, {spread[1]:.2f} m north, {spread[2]:.2f} m up", _LABEL
+    )
+    lines += labelled("Protection", _protection(fix.integrity), _LABEL)
+    lines += labelled(
+        "Satellites", f"{used} used of {len(satellites)}; HDOP {fix.dop.horizontal:.2f}", _LABEL
+    )
     clocks = ", ".join(f"{SYSTEMS[letter]} {value:.2f} m" for letter, value in fix.clocks_m.items())
-    lines += _labelled("Clocks", clocks)
+    lines += labelled("Clocks", clocks, _LABEL)
     out = [row for row, status in enumerate(satellites.status) if status == "excluded"]
     if out:
         lines += ["─" * WIDTH, "excluded      residual   elevation   azimuth   fault probability"]
@@ -68,13 +71,13 @@ def fix_to_text(fix: Fix) -> str:
             f"{satellites.fault_probability[row]:>16.3g}"
         )
     if fix.rival is not None and fix.ambiguous:
-        lines += _labelled(
-            "Rival", f"{fix.rival.distance_m:.0f} m away with probability {fix.rival.probability:.2g}"
+        lines += labelled(
+            "Rival", f"{fix.rival.distance_m:.0f} m away with probability {fix.rival.probability:.2g}", _LABEL
         )
     if fix.notices:
         lines.append("─" * WIDTH)
     for item in fix.notices:
-        lines += _labelled("Note", f"{item.message} {ADVICE.get(item.code, '')}".rstrip())
+        lines += labelled("Note", f"{item.message} {ADVICE.get(item.code, '')}".rstrip(), _LABEL)
     return "\n".join(lines)
 
 
@@ -87,14 +90,3 @@ def _protection(integrity: Integrity) -> str:
         return f"none: larger errors would go unnoticed with more than {assumed}"
     levels = f"{integrity.hpl_m:.1f} m horizontally, {integrity.vpl_m:.1f} m vertically"
     return f"{levels}, exceeded with {assumed}"
-
-
-def _labelled(label: str, sentence: str) -> list[str]:
-    return textwrap.wrap(
-        sentence,
-        WIDTH,
-        initial_indent=label.ljust(_LABEL),
-        subsequent_indent=" " * _LABEL,
-        break_long_words=False,
-        break_on_hyphens=False,
-    )

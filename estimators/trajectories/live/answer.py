@@ -10,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from estimators.arrays import BoolArray, CodeArray, FloatArray, IntArray
-from estimators.trajectories.presentation.dictionary import finite, times
+from estimators.presentation.json_values import numbers_to_json
+from estimators.trajectories.presentation.dictionary import times
 from estimators.trajectories.reasons import FixReason
 from estimators.trajectories.track import Track, TrackNoise
 
@@ -76,19 +77,19 @@ class LiveRows:
             "row": self.row.tolist(),
             "time": times(self.time),
             "inlier": self.inlier.tolist(),
-            "probability": finite(self.probability),
+            "probability": numbers_to_json(self.probability),
             "reason": self.reason,
-            "lat_deg": finite(self.lat_deg),
-            "lon_deg": finite(self.lon_deg),
-            "height_m": finite(self.height_m),
-            "variance_east_m2": finite(covariance[:, 0, 0]),
-            "variance_north_m2": finite(covariance[:, 1, 1]),
-            "covariance_east_north_m2": finite(covariance[:, 0, 1]),
-            "variance_up_m2": finite(covariance[:, 2, 2]),
-            "speed_mps": finite(self.speed_mps),
-            "speed_sigma_mps": finite(self.speed_sigma_mps),
-            "heading_deg": finite(self.heading_deg),
-            "heading_sigma_deg": finite(self.heading_sigma_deg),
+            "lat_deg": numbers_to_json(self.lat_deg),
+            "lon_deg": numbers_to_json(self.lon_deg),
+            "height_m": numbers_to_json(self.height_m),
+            "variance_east_m2": numbers_to_json(covariance[:, 0, 0]),
+            "variance_north_m2": numbers_to_json(covariance[:, 1, 1]),
+            "covariance_east_north_m2": numbers_to_json(covariance[:, 0, 1]),
+            "variance_up_m2": numbers_to_json(covariance[:, 2, 2]),
+            "speed_mps": numbers_to_json(self.speed_mps),
+            "speed_sigma_mps": numbers_to_json(self.speed_sigma_mps),
+            "heading_deg": numbers_to_json(self.heading_deg),
+            "heading_sigma_deg": numbers_to_json(self.heading_sigma_deg),
         }
 
 

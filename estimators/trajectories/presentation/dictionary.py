@@ -2,31 +2,24 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from estimators.arrays import FloatArray
 from estimators.notices import notice_to_dict
+from estimators.presentation.json_values import estimate_to_dict, numbers_to_json
 
 if TYPE_CHECKING:
-    from estimators.result import Estimate
     from estimators.trajectories.track import Stretch, Track
-
-
-def finite(values: FloatArray) -> list[float | None]:
-    """Floats, with None for what is not finite."""
-    if np.isfinite(values).all():
-        return list(values.tolist())
-    return [value if math.isfinite(value) else None for value in values.tolist()]
 
 
 def times(values: npt.NDArray[Any]) -> list[Any]:
     """Numbers as they are, points in time as ISO 8601 in UTC, None where a time is missing."""
     if values.dtype.kind != "M":
-        return list(values.tolist()) if values.dtype.kind in "iu" else finite(values.astype(np.float64))
+        return (
+            list(values.tolist()) if values.dtype.kind in "iu" else numbers_to_json(values.astype(np.float64))
+        )
     moments = values.astype("datetime64[ns]")
     exact = bool(np.all((moments == moments.astype("datetime64[ms]")) | np.isnat(moments)))
     texts = np.datetime_as_string(moments, unit="ms" if exact else "ns").tolist()
@@ -54,7 +47,7 @@ def track_to_dict(track: Track, *, points: bool = True) -> dict[str, Any]:
             "manoeuvre": track.noise.manoeuvre,
             "source": track.noise.source,
         },
-        "distance": {"raw_m": track.distance.raw_m, "cleaned_m": _estimate(track.distance.cleaned)},
+        "distance": {"raw_m": track.distance.raw_m, "cleaned_m": estimate_to_dict(track.distance.cleaned)},
         "stretches": [_stretch(item) for item in track.stretches],
         "notices": [notice_to_dict(item) for item in track.notices],
     }
@@ -63,31 +56,22 @@ def track_to_dict(track: Track, *, points: bool = True) -> dict[str, Any]:
         answer["points"] = {
             "time": times(track.time),
             "inlier": track.points.inlier.tolist(),
-            "probability": finite(track.points.probability),
+            "probability": numbers_to_json(track.points.probability),
             "reason": track.points.reason,
-            "residual_m": finite(track.points.residual_m),
-            "lat_deg": finite(track.lat_deg),
-            "lon_deg": finite(track.lon_deg),
-            "height_m": None if track.height_m is None else finite(track.height_m),
-            "variance_east_m2": finite(covariance[:, 0, 0]),
-            "variance_north_m2": finite(covariance[:, 1, 1]),
-            "covariance_east_north_m2": finite(covariance[:, 0, 1]),
-            "variance_up_m2": None if track.height_m is None else finite(covariance[:, 2, 2]),
-            "speed_mps": finite(track.speed_mps),
-            "speed_sigma_mps": finite(track.speed_sigma_mps),
-            "heading_deg": finite(track.heading_deg),
-            "heading_sigma_deg": finite(track.heading_sigma_deg),
+            "residual_m": numbers_to_json(track.points.residual_m),
+            "lat_deg": numbers_to_json(track.lat_deg),
+            "lon_deg": numbers_to_json(track.lon_deg),
+            "height_m": None if track.height_m is None else numbers_to_json(track.height_m),
+            "variance_east_m2": numbers_to_json(covariance[:, 0, 0]),
+            "variance_north_m2": numbers_to_json(covariance[:, 1, 1]),
+            "covariance_east_north_m2": numbers_to_json(covariance[:, 0, 1]),
+            "variance_up_m2": None if track.height_m is None else numbers_to_json(covariance[:, 2, 2]),
+            "speed_mps": numbers_to_json(track.speed_mps),
+            "speed_sigma_mps": numbers_to_json(track.speed_sigma_mps),
+            "heading_deg": numbers_to_json(track.heading_deg),
+            "heading_sigma_deg": numbers_to_json(track.heading_sigma_deg),
         }
     return answer
-
-
-def _estimate(estimate: Estimate) -> dict[str, float | None]:
-    return {
-        "value": estimate.value,
-        "stderr": estimate.stderr,
-        "low": estimate.low,
-        "high": estimate.high,
-    }
 
 
 def _stretch(item: Stretch) -> dict[str, Any]:
@@ -99,5 +83,5 @@ def _stretch(item: Stretch) -> dict[str, Any]:
         "duration_s": item.duration_s,
         "distance_m": item.distance_m,
         "speed_mps": item.speed_mps,
-        "acceleration_mps2": None if trend is None else _estimate(trend),
+        "acceleration_mps2": None if trend is None else estimate_to_dict(trend),
     }

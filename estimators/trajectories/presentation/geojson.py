@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from estimators.trajectories.presentation.dictionary import finite, times
+from estimators.presentation.json_values import numbers_to_json
+from estimators.trajectories.presentation.dictionary import times
 
 if TYPE_CHECKING:
     from estimators.arrays import IntArray
@@ -84,7 +85,7 @@ def _vertices(track: Track, rows: IntArray) -> list[list[float]]:
 
 def _points(track: Track) -> list[dict[str, Any]]:
     stamps, reasons = times(track.time), track.points.reason
-    probability, sigma = finite(track.points.probability), finite(track.sigma_m)
+    probability, sigma = numbers_to_json(track.points.probability), numbers_to_json(track.sigma_m)
     features = []
     for row in np.flatnonzero(np.isfinite(track.input_lat_deg)).tolist():
         place = [float(track.input_lon_deg[row]), float(track.input_lat_deg[row])]

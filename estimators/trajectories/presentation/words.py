@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import html
-import textwrap
 from collections import Counter
 from collections.abc import Mapping
 from types import MappingProxyType
@@ -12,11 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from estimators.notices import NoticeCode
+from estimators.presentation.text import WIDTH, labelled
 
 if TYPE_CHECKING:
     from estimators.trajectories.track import Track
 
-WIDTH = 80
 _LABEL = 13
 _STRETCHES_SHOWN = 6
 
@@ -89,11 +88,11 @@ def track_to_text(track: Track) -> str:
     """
     lines = [f"Track by {track.method}", "━" * WIDTH]
     for label, sentence in _facts(track):
-        lines += _labelled(label, sentence)
+        lines += labelled(label, sentence, _LABEL)
     if track.notices:
         lines.append("─" * WIDTH)
     for note in _notes(track):
-        lines += _labelled("Note", note)
+        lines += labelled("Note", note, _LABEL)
     return "\n".join(lines)
 
 
@@ -108,14 +107,3 @@ def track_to_html(track: Track) -> str:
     title = html.escape(f"Track by {track.method}")
     caption = f'<caption style="text-align:left"><b>{title}</b></caption>'
     return f'<table class="plumbline">\n{caption}\n{cells}\n</table>'
-
-
-def _labelled(label: str, sentence: str) -> list[str]:
-    return textwrap.wrap(
-        sentence,
-        WIDTH,
-        initial_indent=label.ljust(_LABEL),
-        subsequent_indent=" " * _LABEL,
-        break_long_words=False,
-        break_on_hyphens=False,
-    )

@@ -9,14 +9,10 @@ import numpy as np
 
 from estimators.arrays import FloatArray
 from estimators.notices import notice_to_dict
+from estimators.presentation.json_values import estimate_to_dict, numbers_to_json
 from estimators.result import Uncertainty
 from estimators.trends.bases.own import values_at_rows
-from estimators.trends.presentation.json_values import (
-    estimate_to_dict,
-    numbers_to_json,
-    origin_to_json,
-    time_to_json,
-)
+from estimators.trends.presentation.json_values import origin_to_json, time_to_json
 from estimators.trends.presentation.question_forms import crossing_to_dict, regime_to_dict
 from estimators.trends.questions.slopes import slope_per_to_dict
 

@@ -1,17 +1,12 @@
-"""Numbers, times and estimates in JSON-safe form: what JSON lacks becomes null.
-
-Columns are converted as whole arrays: 1e5 points take milliseconds, not seconds.
-"""
+"""Times in JSON-safe form: what JSON lacks becomes null."""
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 
-from estimators.arrays import FloatArray
-from estimators.result import Estimate
+from estimators.presentation.json_values import numbers_to_json
 
 
 def time_to_json(times: np.ndarray[Any, Any]) -> list[Any]:
@@ -45,23 +40,6 @@ def _with_zone(text: str) -> str:
 def iso_utc(moment: np.datetime64) -> str:
     """ISO 8601 with ``Z``, as few decimals of a second as the moment needs."""
     return _with_zone(str(moment.astype("datetime64[ns]")))
-
-
-def numbers_to_json(values: FloatArray) -> list[float | None]:
-    """Floats with None for what is not finite."""
-    if np.isfinite(values).all():
-        return list(values.tolist())
-    return [value if math.isfinite(value) else None for value in values.tolist()]
-
-
-def estimate_to_dict(estimate: Estimate) -> dict[str, float | None]:
-    """JSON-safe form of an estimate."""
-    return {
-        "value": estimate.value,
-        "stderr": estimate.stderr,
-        "low": estimate.low,
-        "high": estimate.high,
-    }
 
 
 def origin_to_json(origin: float | np.datetime64) -> float | str:

@@ -7,10 +7,11 @@ import textwrap
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
+from estimators.presentation.text import WIDTH, labelled
+
 if TYPE_CHECKING:
     from estimators.trends.presentation.report import Report
 
-WIDTH = 80
 _LABEL = 12
 _HTML_COLUMNS = 5
 
@@ -37,7 +38,7 @@ def to_text(report: Report) -> str:
         thin,
     ]
     for label, sentence in report.facts:
-        lines += _labelled(label, sentence)
+        lines += labelled(label, sentence, _LABEL)
     if report.outliers:
         lines += [thin, *_columns([outlier_titles(report), *report.outliers])]
     if report.predictions:
@@ -45,7 +46,7 @@ def to_text(report: Report) -> str:
     if report.notices:
         lines.append(thin)
     for message, advice in report.notices:
-        lines += _labelled("Note", f"{message} {advice}".rstrip())
+        lines += labelled("Note", f"{message} {advice}".rstrip(), _LABEL)
     return "\n".join(lines)
 
 
@@ -79,17 +80,6 @@ def _columns(rows: Sequence[Sequence[str]]) -> list[str]:
         right = (cell.rjust(width) for cell, width in zip(others, widths[1:], strict=True))
         lines.append(gap.join([first.ljust(widths[0]), *right]).rstrip())
     return lines
-
-
-def _labelled(label: str, sentence: str) -> list[str]:
-    return textwrap.wrap(
-        sentence,
-        WIDTH,
-        initial_indent=label.ljust(_LABEL),
-        subsequent_indent=" " * _LABEL,
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
 
 
 def _equation(text: str) -> list[str]:

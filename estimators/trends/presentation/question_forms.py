@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from estimators.trends.presentation.json_values import estimate_to_dict, time_to_json
+from estimators.presentation.json_values import estimate_to_dict
+from estimators.trends.presentation.json_values import time_to_json
 
 if TYPE_CHECKING:
     from estimators.trends.questions.crossing import Crossing

@@ -1,0 +1,1 @@
+"""How an answer of any kind is told: what trends, tracks and positions write alike."""
