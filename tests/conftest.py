@@ -8,21 +8,31 @@ from pathlib import Path
 import pytest
 
 
+def _published(folder: str, what: str) -> Path:
+    """Folder of the published data; ``PLUMBLINE_TEST_DATA`` names the one that holds it."""
+    beside = Path(__file__).resolve().parents[2] / "shared" / "data"
+    found = Path(os.environ.get("PLUMBLINE_TEST_DATA", beside)) / folder
+    if not found.is_dir():
+        pytest.skip(f"the {what} are not here; PLUMBLINE_TEST_DATA says where they are")
+    return found
+
+
 @pytest.fixture(scope="session")
 def trend_data() -> Path:
-    """Folder of the published trend data; ``PLUMBLINE_TEST_DATA`` names the folder that holds ``trends``."""
-    beside = Path(__file__).resolve().parents[2] / "shared" / "data"
-    folder = Path(os.environ.get("PLUMBLINE_TEST_DATA", beside)) / "trends"
-    if not folder.is_dir():
-        pytest.skip("the published data sets are not here; PLUMBLINE_TEST_DATA says where they are")
-    return folder
+    return _published("trends", "published data sets")
 
 
 @pytest.fixture(scope="session")
 def gnss_data() -> Path:
-    """Folder of the recorded pseudoranges; ``PLUMBLINE_TEST_DATA`` names the folder that holds ``gnss``."""
-    beside = Path(__file__).resolve().parents[2] / "shared" / "data"
-    folder = Path(os.environ.get("PLUMBLINE_TEST_DATA", beside)) / "gnss"
-    if not folder.is_dir():
-        pytest.skip("the recorded pseudoranges are not here; PLUMBLINE_TEST_DATA says where they are")
-    return folder
+    return _published("gnss", "recorded pseudoranges")
+
+
+@pytest.fixture(scope="session")
+def track_data() -> Path:
+    return _published("trajectories", "published tracks")
+
+
+@pytest.fixture(scope="session")
+def track_files() -> Path:
+    """Recorded tracks without truth, as files of several formats."""
+    return _published("trajectories/notruth", "recorded tracks")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gzip
 import json
-import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -34,16 +33,6 @@ BODY_LIMIT = 1_200_000
 def server() -> Iterator[Server]:
     with serve(max_body_bytes=BODY_LIMIT, max_points=10_000) as running:
         yield running
-
-
-@pytest.fixture(scope="module")
-def recorded() -> Path:
-    """Folder of recorded tracks; ``PLUMBLINE_TEST_DATA`` names the folder that holds ``trajectories``."""
-    beside = Path(__file__).resolve().parents[3] / "shared" / "data"
-    folder = Path(os.environ.get("PLUMBLINE_TEST_DATA", beside)) / "trajectories" / "notruth"
-    if not folder.is_dir():
-        pytest.skip("the recorded tracks are not here; PLUMBLINE_TEST_DATA says where they are")
-    return folder
 
 
 def table(fields: dict[str, Any]) -> pa.Table:
@@ -244,14 +233,14 @@ RECORDED = [
 
 
 @pytest.mark.parametrize("name", RECORDED)
-def test_a_recorded_track_has_a_label_for_every_row(server: Server, recorded: Path, name: str) -> None:
-    content = (recorded / name).read_bytes()
+def test_a_recorded_track_has_a_label_for_every_row(server: Server, track_files: Path, name: str) -> None:
+    content = (track_files / name).read_bytes()
     answer = upload(server, (name, content)).json()
     (TracksAnswer if "tracks" in answer else TrackAnswer).model_validate(answer)
     parts = [item["track"] or item["refusal"] for item in answer.get("tracks", [{"track": answer}])]
     assert sum(len(part["points"]["reason"]) for part in parts) == len(read_track(content))
 
 
-def test_a_recorded_track_without_times_is_refused(server: Server, recorded: Path) -> None:
-    content = (recorded / "gpxpy_track-with-extremes.gpx").read_bytes()
+def test_a_recorded_track_without_times_is_refused(server: Server, track_files: Path) -> None:
+    content = (track_files / "gpxpy_track-with-extremes.gpx").read_bytes()
     refused(upload(server, ("a.gpx", content)), ProblemType.invalid_value, "time")
