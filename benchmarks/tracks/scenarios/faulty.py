@@ -5,32 +5,26 @@ from __future__ import annotations
 from benchmarks.tracks import motions, noises, offsets, samplings
 from benchmarks.tracks.faults import Bursts, Spikes
 from benchmarks.tracks.generator import Scenario
+from benchmarks.tracks.scenarios.laws import BACK, FAR, HZ, NEAR, STEP, USUAL, WALK
 
-_HZ = samplings.every(1.0)
-_USUAL = noises.normal(4.0)
-_FAR = offsets.scattered(60.0, 3000.0)
-_NEAR = offsets.scattered(40.0, 300.0)
 _CLUMP = offsets.clumped(400.0)
-_STEP = offsets.constant(40.0, 400.0)
-_WALK = offsets.random_walk(50.0, 300.0, 2.0)
 _RAMP = offsets.ramp(60.0, 300.0)
-_BACK = offsets.returning(150.0, 600.0, 12.0)
 
 # Held out: the highest share, offsets of a normal law instead of a logarithmic one, and a fixed false place.
 SPIKES = (
-    Scenario("city, spikes 5 %", "spikes", "tune", motions.city, _USUAL, _HZ, (Spikes(0.05, _FAR),)),
-    Scenario("city, spikes 20 %", "spikes", "tune", motions.city, _USUAL, _HZ, (Spikes(0.2, _FAR),)),
-    Scenario("walk, near spikes 10 %", "spikes", "tune", motions.walk, _USUAL, _HZ, (Spikes(0.1, _NEAR),)),
-    Scenario("circle, spikes 40 %", "spikes", "held_out", motions.circle, _USUAL, _HZ, (Spikes(0.4, _FAR),)),
-    Scenario("train, spikes 15 %", "spikes", "held_out", motions.train, _USUAL, _HZ, (Spikes(0.15, _CLUMP),)),
+    Scenario("city, spikes 5 %", "spikes", "tune", motions.city, USUAL, HZ, (Spikes(0.05, FAR),)),
+    Scenario("city, spikes 20 %", "spikes", "tune", motions.city, USUAL, HZ, (Spikes(0.2, FAR),)),
+    Scenario("walk, near spikes 10 %", "spikes", "tune", motions.walk, USUAL, HZ, (Spikes(0.1, NEAR),)),
+    Scenario("circle, spikes 40 %", "spikes", "held_out", motions.circle, USUAL, HZ, (Spikes(0.4, FAR),)),
+    Scenario("train, spikes 15 %", "spikes", "held_out", motions.train, USUAL, HZ, (Spikes(0.15, _CLUMP),)),
     Scenario(
         "walk, fixes at (0, 0)",
         "spikes",
         "held_out",
         motions.walk,
-        _USUAL,
-        _HZ,
-        (Spikes(0.05, _FAR),),
+        USUAL,
+        HZ,
+        (Spikes(0.05, FAR),),
         zeroed=True,
     ),
 )
@@ -42,48 +36,48 @@ BURSTS = (
         "bursts",
         "tune",
         motions.city,
-        _USUAL,
-        _HZ,
-        (Bursts(0.15, _STEP, 5.0, 25.0),),
+        USUAL,
+        HZ,
+        (Bursts(0.15, STEP, 5.0, 25.0),),
     ),
     Scenario(
         "city, walking bursts 30 %",
         "bursts",
         "tune",
         motions.city,
-        _USUAL,
-        _HZ,
-        (Bursts(0.3, _WALK, 5.0, 30.0),),
+        USUAL,
+        HZ,
+        (Bursts(0.3, WALK, 5.0, 30.0),),
     ),
     Scenario(
-        "walk, ramps 15 %", "bursts", "held_out", motions.walk, _USUAL, _HZ, (Bursts(0.15, _RAMP, 8.0, 20.0),)
+        "walk, ramps 15 %", "bursts", "held_out", motions.walk, USUAL, HZ, (Bursts(0.15, _RAMP, 8.0, 20.0),)
     ),
     Scenario(
         "stop and go, returning bursts 20 %",
         "bursts",
         "held_out",
         motions.stop_and_go,
-        _USUAL,
-        _HZ,
-        (Bursts(0.2, _BACK, 10.0, 30.0),),
+        USUAL,
+        HZ,
+        (Bursts(0.2, BACK, 10.0, 30.0),),
     ),
     Scenario(
         "train, constant bursts 20 %",
         "bursts",
         "held_out",
         motions.train,
-        _USUAL,
-        _HZ,
-        (Bursts(0.2, _STEP, 5.0, 25.0),),
+        USUAL,
+        HZ,
+        (Bursts(0.2, STEP, 5.0, 25.0),),
     ),
     Scenario(
         "stationary, walking bursts 20 %",
         "bursts",
         "tune",
         motions.stationary,
-        _USUAL,
-        _HZ,
-        (Bursts(0.2, _WALK, 5.0, 30.0),),
+        USUAL,
+        HZ,
+        (Bursts(0.2, WALK, 5.0, 30.0),),
     ),
 )
 
@@ -94,27 +88,27 @@ MIXED = (
         "mixed",
         "tune",
         motions.city,
-        _USUAL,
-        _HZ,
-        (Bursts(0.15, _STEP, 5.0, 25.0), Spikes(0.1, _FAR)),
+        USUAL,
+        HZ,
+        (Bursts(0.15, STEP, 5.0, 25.0), Spikes(0.1, FAR)),
     ),
     Scenario(
         "city with gaps, mixed 20 %",
         "mixed",
         "tune",
         motions.city,
-        _USUAL,
+        USUAL,
         samplings.with_gaps(1.0, 4, 20.0, 60.0),
-        (Bursts(0.1, _WALK, 5.0, 20.0), Spikes(0.1, _FAR)),
+        (Bursts(0.1, WALK, 5.0, 20.0), Spikes(0.1, FAR)),
     ),
     Scenario(
         "walk, irregular sampling, mixed 20 %",
         "mixed",
         "tune",
         motions.walk,
-        _USUAL,
+        USUAL,
         samplings.at_random(2.0, 0.3),
-        (Bursts(0.1, _STEP, 10.0, 30.0), Spikes(0.1, _NEAR)),
+        (Bursts(0.1, STEP, 10.0, 30.0), Spikes(0.1, NEAR)),
         duration_s=1800.0,
     ),
     Scenario(
@@ -122,9 +116,9 @@ MIXED = (
         "mixed",
         "held_out",
         motions.stop_and_go,
-        _USUAL,
-        _HZ,
-        (Bursts(0.2, _BACK, 8.0, 25.0), Spikes(0.1, _CLUMP)),
+        USUAL,
+        HZ,
+        (Bursts(0.2, BACK, 8.0, 25.0), Spikes(0.1, _CLUMP)),
     ),
     Scenario(
         "city at 10 Hz, mixed 20 %",
@@ -133,7 +127,7 @@ MIXED = (
         motions.city,
         noises.normal(2.0),
         samplings.every(0.1),
-        (Bursts(0.15, _WALK, 4.0, 15.0), Spikes(0.05, _CLUMP)),
+        (Bursts(0.15, WALK, 4.0, 15.0), Spikes(0.05, _CLUMP)),
         duration_s=180.0,
     ),
     Scenario(
@@ -141,8 +135,8 @@ MIXED = (
         "mixed",
         "held_out",
         motions.train,
-        _USUAL,
+        USUAL,
         samplings.jittered(1.0, 0.8),
-        (Bursts(0.1, _WALK, 5.0, 20.0), Spikes(0.1, _CLUMP)),
+        (Bursts(0.1, WALK, 5.0, 20.0), Spikes(0.1, _CLUMP)),
     ),
 )

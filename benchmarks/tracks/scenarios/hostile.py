@@ -6,14 +6,8 @@ from benchmarks.tracks import motions, noises, offsets, samplings
 from benchmarks.tracks.disorder import Repeated, Unsorted, WrongClock
 from benchmarks.tracks.faults import Bursts, FromTheStart, Spikes, Stuck, ToTheEnd
 from benchmarks.tracks.generator import Scenario
+from benchmarks.tracks.scenarios.laws import BACK, FAR, HZ, NEAR, STEP, USUAL, WALK
 
-_HZ = samplings.every(1.0)
-_USUAL = noises.normal(4.0)
-_FAR = offsets.scattered(60.0, 3000.0)
-_NEAR = offsets.scattered(40.0, 300.0)
-_STEP = offsets.constant(40.0, 400.0)
-_WALK = offsets.random_walk(50.0, 300.0, 2.0)
-_BACK = offsets.returning(150.0, 600.0, 12.0)
 _SWAY = offsets.wandering(40.0, 120.0, 0.3, 15.0)
 _CREEP = offsets.ramp(40.0, 100.0)
 
@@ -25,16 +19,16 @@ HARD = (
         "tune",
         motions.city,
         noises.student(4.0, 2.5),
-        _HZ,
-        (Bursts(0.1, _STEP, 5.0, 25.0), Spikes(0.1, _FAR)),
+        HZ,
+        (Bursts(0.1, STEP, 5.0, 25.0), Spikes(0.1, FAR)),
     ),
     Scenario(
         "city, wandering 30-90 s, 25 %",
         "hard",
         "tune",
         motions.city,
-        _USUAL,
-        _HZ,
+        USUAL,
+        HZ,
         (Bursts(0.25, _SWAY, 30.0, 90.0),),
     ),
     Scenario(
@@ -43,7 +37,7 @@ HARD = (
         "tune",
         motions.walk,
         noises.student(3.0, 4.0),
-        _HZ,
+        HZ,
         (Bursts(0.25, _SWAY, 20.0, 60.0),),
     ),
     Scenario(
@@ -52,16 +46,16 @@ HARD = (
         "held_out",
         motions.walk,
         noises.laplace(5.0),
-        _HZ,
-        (Bursts(0.1, _BACK, 5.0, 25.0), Spikes(0.1, _NEAR)),
+        HZ,
+        (Bursts(0.1, BACK, 5.0, 25.0), Spikes(0.1, NEAR)),
     ),
     Scenario(
         "stop and go, creeping 30-60 s, 20 %",
         "hard",
         "held_out",
         motions.stop_and_go,
-        _USUAL,
-        _HZ,
+        USUAL,
+        HZ,
         (Bursts(0.2, _CREEP, 30.0, 60.0),),
     ),
     Scenario(
@@ -70,8 +64,8 @@ HARD = (
         "held_out",
         motions.city,
         noises.normal(9.0),
-        _HZ,
-        (Bursts(0.1, _STEP, 5.0, 25.0), Spikes(0.1, _NEAR)),
+        HZ,
+        (Bursts(0.1, STEP, 5.0, 25.0), Spikes(0.1, NEAR)),
     ),
 )
 
@@ -82,7 +76,7 @@ SPARSE = (
         "sparse",
         "tune",
         motions.city,
-        _USUAL,
+        USUAL,
         samplings.every(30.0),
         (Spikes(0.1, offsets.scattered(300.0, 5000.0)),),
         duration_s=7200.0,
@@ -92,7 +86,7 @@ SPARSE = (
         "sparse",
         "tune",
         motions.train,
-        _USUAL,
+        USUAL,
         samplings.every(10.0),
         (Spikes(0.1, offsets.scattered(300.0, 5000.0)),),
         duration_s=3600.0,
@@ -102,7 +96,7 @@ SPARSE = (
         "sparse",
         "held_out",
         motions.city,
-        _USUAL,
+        USUAL,
         samplings.at_random(20.0, 5.0),
         (Bursts(0.1, offsets.constant(300.0, 2000.0), 40.0, 150.0), Spikes(0.1, offsets.clumped(2000.0))),
         duration_s=7200.0,
@@ -116,9 +110,9 @@ OTHER = (
         "other",
         "tune",
         motions.city,
-        _USUAL,
-        _HZ,
-        (Spikes(0.1, _FAR),),
+        USUAL,
+        HZ,
+        (Spikes(0.1, FAR),),
         disorder=(Repeated(0.1), Unsorted(0.2, 8)),
     ),
     Scenario(
@@ -127,16 +121,16 @@ OTHER = (
         "tune",
         motions.city,
         noises.reported(2.0, 25.0),
-        _HZ,
-        (Bursts(0.1, _STEP, 5.0, 25.0), Spikes(0.05, _FAR)),
+        HZ,
+        (Bursts(0.1, STEP, 5.0, 25.0), Spikes(0.05, FAR)),
     ),
     Scenario(
         "walk, cold start",
         "other",
         "tune",
         motions.walk,
-        _USUAL,
-        _HZ,
+        USUAL,
+        HZ,
         (FromTheStart(0.05, offsets.returning(200.0, 1000.0, 15.0)),),
     ),
     Scenario(
@@ -144,9 +138,9 @@ OTHER = (
         "other",
         "tune",
         motions.city,
-        _USUAL,
-        _HZ,
-        (Bursts(0.1, _STEP, 5.0, 25.0), Spikes(0.1, _FAR)),
+        USUAL,
+        HZ,
+        (Bursts(0.1, STEP, 5.0, 25.0), Spikes(0.1, FAR)),
         place=(-16.8, 179.9995),
     ),
     Scenario(
@@ -154,20 +148,18 @@ OTHER = (
         "other",
         "held_out",
         motions.city,
-        _USUAL,
-        _HZ,
+        USUAL,
+        HZ,
         clock=WrongClock(0.08, 5.0, 20.0, 30.0, 200.0),
     ),
-    Scenario(
-        "city, stuck receiver", "other", "held_out", motions.city, _USUAL, _HZ, (Stuck(0.12, 8.0, 30.0),)
-    ),
+    Scenario("city, stuck receiver", "other", "held_out", motions.city, USUAL, HZ, (Stuck(0.12, 8.0, 30.0),)),
     Scenario(
         "constant velocity, slow drift",
         "other",
         "held_out",
         motions.constant_velocity,
-        _USUAL,
-        _HZ,
+        USUAL,
+        HZ,
         (ToTheEnd(0.6, offsets.ramp(60.0, 150.0)),),
     ),
     Scenario(
@@ -175,18 +167,18 @@ OTHER = (
         "other",
         "held_out",
         motions.walk_then_drive,
-        _USUAL,
-        _HZ,
-        (Bursts(0.1, _WALK, 5.0, 20.0), Spikes(0.05, _FAR)),
+        USUAL,
+        HZ,
+        (Bursts(0.1, WALK, 5.0, 20.0), Spikes(0.05, FAR)),
     ),
     Scenario(
         "walk at the pole, mixed 20 %",
         "other",
         "held_out",
         motions.walk,
-        _USUAL,
-        _HZ,
-        (Bursts(0.1, _STEP, 5.0, 25.0), Spikes(0.1, _NEAR)),
+        USUAL,
+        HZ,
+        (Bursts(0.1, STEP, 5.0, 25.0), Spikes(0.1, NEAR)),
         place=(89.999, 30.0),
     ),
 )
