@@ -13,10 +13,12 @@ from dataclasses import fields
 
 from pydantic import SecretStr
 
-from estimators import PositionOptions, RobustOptions, methods, models, position_methods
+from estimators import PositionOptions, RobustOptions, methods, models, position_methods, track_methods
 from estimators.notices import NOTICE_MEANINGS
 from service.errors import ProblemType
 from service.settings import Settings
+from tests.docs.blocks import ROOT
+from tests.docs.measured import read_measured
 
 _DEFAULT = re.compile(r"\(default:? (?P<value>[^();]*)")
 _ASIDE = re.compile(r" \((?:default|METHODS|``PLUMBLINE)[^()]*(?:\([^()]*\)[^()]*)*\)")
@@ -113,6 +115,16 @@ def _problems() -> str:
     )
 
 
+def _track_methods() -> str:
+    measured = read_measured(ROOT / "docs" / "benchmarks_tracks.md", "## Beside peers")
+    rows = []
+    for row in track_methods().values():
+        figures = measured[f"Plumbline {row.name}"]
+        told = (figures[name] for name in ("spikes", "bursts", "mixed", "held out"))
+        rows.append((f"`{row.name}`", row.summary, *told))
+    return _markdown(("method", "what it does", "spikes", "bursts", "both", "over oracle"), rows)
+
+
 def _plain(value: object) -> str:
     shown = value.get_secret_value() if isinstance(value, SecretStr) else value
     return "none" if shown in ("", None) else f"`{shown}`"
@@ -153,4 +165,5 @@ TABLES: dict[str, Callable[[], str]] = {
     "position-options": _position_options,
     "problems": _problems,
     "settings": _settings,
+    "track-methods": _track_methods,
 }
