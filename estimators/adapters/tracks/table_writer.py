@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from estimators.adapters.tracks.assembly import RANGES
 from estimators.adapters.tracks.cleaned import Cleaned
+from estimators.adapters.tracks.column_values import column_values
 from estimators.adapters.tracks.recording import FIELD, Recording
-from estimators.adapters.tracks.written_columns import Precision, positions
+from estimators.adapters.tracks.written_columns import Precision
 from estimators.arrays import InputError
 
 if TYPE_CHECKING:
@@ -98,30 +98,16 @@ def _written(pairs: Iterable[tuple[Recording, Cleaned]], opened: Any) -> Iterato
 
 def _table(recording: Recording, cleaned: Cleaned) -> Any:
     pa, _ = _pyarrow()
-    lat, lon, height = positions(recording, cleaned)
-    columns: dict[str, Any] = {"time": _times(recording)}
-    if recording.devices:
-        columns["device"] = pa.array(recording.device_names(), type=pa.string())
-    if recording.segment is not None:
-        columns["segment"] = recording.segment
-    columns |= {"lat": _numbers(lat), "lon": _numbers(lon)}
-    if height is not None:
-        columns["height_m"] = _numbers(height)
-    columns |= {"raw_lat": _numbers(recording.lat), "raw_lon": _numbers(recording.lon)}
-    if recording.height_m is not None and cleaned.height_m is not None:
-        columns["raw_height_m"] = _numbers(recording.height_m)
-    for name in RANGES:
-        values = getattr(recording, name)
-        if name != "height_m" and values is not None:
-            columns[name] = _numbers(values)
-    if cleaned.inlier is not None:
-        columns["inlier"] = cleaned.inlier
-    if cleaned.probability is not None:
-        columns["probability"] = _numbers(cleaned.probability)
-    if cleaned.reason is not None:
-        columns["reason"] = pa.array(cleaned.reason, type=pa.string())
-    columns |= {name: _numbers(values) for name, values in cleaned.others.items()}
-    return pa.table(columns)
+    columns = {name: _array(values) for name, values in column_values(recording, cleaned).items()}
+    return pa.table({"time": _times(recording), **columns})
+
+
+def _array(values: Any) -> Any:
+    """Arrow array of texts or of numbers."""
+    pa, _ = _pyarrow()
+    if isinstance(values, list):
+        return pa.array(values, type=pa.string())
+    return _numbers(values) if values.dtype.kind == "f" else pa.array(values)
 
 
 def _numbers(values: Any) -> Any:

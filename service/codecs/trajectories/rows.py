@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from estimators import NoFit, Track
 from estimators.adapters.tracks import Cleaned
-from estimators.adapters.tracks.assembly import RANGES
+from estimators.adapters.tracks.column_values import column_values
 from service.trajectories.cleaned import CleanedTracks
 
 Floats = npt.NDArray[np.float64]
@@ -69,19 +69,4 @@ def columns_of(cleaned: CleanedTracks) -> dict[str, Any]:
     dict of str to ndarray or list of str
         Numbers are NaN where there is none.
     """
-    recording, rows = cleaned.recorded.recording, cleaned_rows(cleaned)
-    columns: dict[str, Any] = {}
-    if recording.devices:
-        columns["device"] = recording.device_names()
-    if recording.segment is not None:
-        columns["segment"] = recording.segment
-    height = recording.height_m if rows.height_m is None else rows.height_m
-    columns |= {"lat": rows.lat, "lon": rows.lon}
-    columns |= {} if height is None else {"height_m": height}
-    columns |= {"raw_lat": recording.lat, "raw_lon": recording.lon}
-    if recording.height_m is not None and rows.height_m is not None:
-        columns["raw_height_m"] = recording.height_m
-    measured = {name: getattr(recording, name) for name in RANGES if name != "height_m"}
-    columns |= {name: column for name, column in measured.items() if column is not None}
-    columns |= {"inlier": rows.inlier, "probability": rows.probability, "reason": rows.reason}
-    return columns | dict(rows.others)
+    return column_values(cleaned.recorded.recording, cleaned_rows(cleaned))
