@@ -19,6 +19,7 @@ from estimators.notices import Notice, NoticeCode
 from estimators.options import RobustOptions
 from estimators.result import Estimate, NoFit, NoFitReason
 from estimators.trajectories.clean import clean_in_pieces, clean_trajectory
+from estimators.trajectories.ellipse import accuracy_of_ellipse
 from estimators.trajectories.live.answer import LiveRows, LiveTrack
 from estimators.trajectories.live.clean_live import clean_live
 from estimators.trajectories.methods.registry import TRACK_METHODS, TrackMethod
@@ -63,6 +64,7 @@ __all__ = [
     "TrendModel",
     "TrendTable",
     "__version__",
+    "accuracy_of_ellipse",
     "clean_in_pieces",
     "clean_live",
     "clean_trajectory",

@@ -19,7 +19,7 @@ from starlette.middleware.cors import CORSMiddleware
 from starlette.requests import ClientDisconnect
 
 from service.admission import Admission, BodyBudget, LimitBodies
-from service.api import batch, catalogue, docs, health, positions, trajectories, trends
+from service.api import batch, catalogue, docs, health, live_tracks, positions, trajectories, trends
 from service.codecs.arguments import from_validation
 from service.compute import Compute
 from service.errors import Problem, ProblemType
@@ -97,7 +97,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.settings = settings
     app.state.metrics = metrics
     app.state.admission = admission
-    for part in (trends, batch, positions, trajectories, catalogue, health, docs):
+    for part in (trends, batch, positions, trajectories, live_tracks, catalogue, health, docs):
         app.include_router(part.router)
     _answer_errors(app)
     # Made when it is asked for: the first fit does not wait for it.

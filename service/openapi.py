@@ -19,6 +19,7 @@ from pydantic.json_schema import models_json_schema
 from service.errors import ProblemType
 from service.schemas.batch import BatchRequest
 from service.schemas.fixes import FeatureAnswer, FeatureCollectionAnswer
+from service.schemas.live_tracks import LiveRequest
 from service.schemas.options import TrendRequest
 from service.schemas.positions import PositionRequest
 from service.schemas.problems import ProblemAnswer, problem_responses
@@ -42,6 +43,7 @@ DESCRIBED: tuple[type[BaseModel], ...] = (
     FeatureCollectionAnswer,
     TrackRequest,
     TrackFeaturesAnswer,
+    LiveRequest,
     ProblemAnswer,
 )
 

@@ -42,6 +42,7 @@ LATE_MODULES = (
     "service.codecs.positions.tables",
     "service.codecs.trajectories.files",
     "service.codecs.trajectories.files_out",
+    "service.codecs.trajectories.live",
 )
 
 #: Where the extra [rinex] is installed.

@@ -58,7 +58,8 @@ _BYTE = re.compile(r"\(byte (\d+)\)")
 _ROW = re.compile(r"\$\[(\d+)\]")
 _NOT_FINITE = re.compile(rb"-?(nan|inf)", re.IGNORECASE)
 _OPEN_COLUMN = re.compile(
-    rb'"(time|value|weight|predict|lat|lon|height|accuracy|[xyz]_m|pseudorange_m|sigma_m|cn0_dbhz)"'
+    rb'"(time|value|weight|predict|lat|lon|height|accuracy|speed|bearing|semi_major|semi_minor|orientation'
+    rb'|[xyz]_m|pseudorange_m|sigma_m|cn0_dbhz)"'
     rb"\s*:\s*\[[^\]]*\Z"
 )
 

@@ -88,6 +88,43 @@ class TrackRequest(TrackArguments):
         list[float | None] | None,
         Field(description="Radius about each fix that holds 68 % as the receiver reports it, metres."),
     ] = None
+    semi_major: Annotated[
+        list[float | None] | None,
+        Field(
+            description="Instead of `accuracy`, an error ellipse: standard deviation along its longer axis, "
+            "metres. It is taken as the circle of the same mean square."
+        ),
+    ] = None
+    semi_minor: Annotated[
+        list[float | None] | None, Field(description="Standard deviation along its shorter axis, metres.")
+    ] = None
+    orientation: Annotated[
+        list[float | None] | None,
+        Field(description="Of the longer axis, degrees clockwise from north. Taken, and not used."),
+    ] = None
+    speed: Annotated[
+        list[float | None] | None, Field(description="Over ground, as the receiver measures it, m/s.")
+    ] = None
+    bearing: Annotated[
+        list[float | None] | None,
+        Field(description="Course over ground, degrees clockwise from north; counts beside `speed`."),
+    ] = None
+
+
+#: Parameters that name a column of a table, by what it is to the readers of files.
+COLUMN_PARAMETERS = {
+    "time": "time_column",
+    "lat": "lat_column",
+    "lon": "lon_column",
+    "device": "device_column",
+    "height_m": "height_column",
+    "accuracy_m": "accuracy_column",
+    "ellipse_major_m": "semi_major_column",
+    "ellipse_minor_m": "semi_minor_column",
+    "ellipse_bearing_deg": "orientation_column",
+    "speed_mps": "speed_column",
+    "bearing_deg": "bearing_column",
+}
 
 
 class TrackAnswerQuery(BaseModel):
@@ -138,6 +175,17 @@ class TrackQuery(TrackAnswerQuery):
     accuracy_column: Annotated[ColumnName | None, Field(description="Tables: column of the accuracies.")] = (
         None
     )
+    semi_major_column: Annotated[
+        ColumnName | None, Field(description="Tables: column of the longer axes of error ellipses.")
+    ] = None
+    semi_minor_column: Annotated[
+        ColumnName | None, Field(description="Tables: column of the shorter axes.")
+    ] = None
+    orientation_column: Annotated[
+        ColumnName | None, Field(description="Tables: column of the ellipses' orientations.")
+    ] = None
+    speed_column: Annotated[ColumnName | None, Field(description="Tables: column of the speeds, m/s.")] = None
+    bearing_column: Annotated[ColumnName | None, Field(description="Tables: column of the courses.")] = None
 
     def arguments(self) -> dict[str, Any]:
         """Arguments that were given, as in a JSON body."""
@@ -146,14 +194,7 @@ class TrackQuery(TrackAnswerQuery):
 
     def columns(self) -> dict[str, str]:
         """Columns of a table that were named, by what they are to the readers of files."""
-        named = {
-            "time": self.time_column,
-            "lat": self.lat_column,
-            "lon": self.lon_column,
-            "device": self.device_column,
-            "height_m": self.height_column,
-            "accuracy_m": self.accuracy_column,
-        }
+        named = {role: getattr(self, parameter) for role, parameter in COLUMN_PARAMETERS.items()}
         return {role: name for role, name in named.items() if name is not None}
 
     def not_json(self) -> list[str]:

@@ -17,8 +17,13 @@ from service.trajectories.recorded import Recorded
 
 Integers = npt.NDArray[np.int64]
 
-#: Columns of a recording that the library takes beside times and places, under the same names.
-MEASURED = ("height_m", "accuracy_m")
+#: What the library takes beside times and places, and what of a recording that is.
+MEASURED = {
+    "height_m": "height_m",
+    "accuracy_m": "radius_m",
+    "speed_mps": "speed_mps",
+    "bearing_deg": "bearing_deg",
+}
 
 #: The library's arguments by the names they have on the wire.
 WIRE_NAMES = {
@@ -27,6 +32,8 @@ WIRE_NAMES = {
     "lon_deg": "lon",
     "height_m": "height",
     "accuracy_m": "accuracy",
+    "speed_mps": "speed",
+    "bearing_deg": "bearing",
     "options.sigma_m": "sigma_m",
     "options.max_speed_mps": "max_speed_mps",
 }
@@ -89,7 +96,7 @@ def clean_recorded(
     """
     options = TrackOptions(sigma_m=arguments.sigma_m, max_speed_mps=arguments.max_speed_mps)
     recording = recorded.recording
-    measured = {name: getattr(recording, name) for name in MEASURED}
+    measured = {name: getattr(recording, column) for name, column in MEASURED.items()}
     devices = rows_of_devices(recorded)
     found = []
     for done, (device, rows) in enumerate(devices):

@@ -11,6 +11,8 @@ from estimators.adapters.tracks.source import MOST_BYTES, Source, TooLargeError
 from service.codecs.limits import Limits
 from service.errors import Problem, ProblemType, invalid_value
 from service.schemas.fields import TimeUnit
+from service.schemas.trajectories import COLUMN_PARAMETERS
+from service.trajectories.ellipses import named_ellipse, refuse_both
 from service.trajectories.recorded import TABLES
 
 _FOR_TABLES = "is for tables (CSV, Arrow, Parquet); leave it out with other files"
@@ -46,6 +48,7 @@ def read_files(
     Problem
         422 if a file is not what it should be, 413 beyond the limits.
     """
+    refuse_both(columns, COLUMN_PARAMETERS)
     recordings: list[Recording] = []
     for place, source in enumerate(sources):
         which = f"file {place + 1}: " if len(sources) > 1 else ""
@@ -70,7 +73,7 @@ def read_files(
             named = field if error.field == "track" else error.field
             raise invalid_value(named, f"{which}{error.message}") from error
         _refuse_unused(recording, columns, time_unit)
-        recordings.append(recording)
+        recordings.append(named_ellipse(recording, columns))
         limits.check_points(sum(map(len, recordings)))
         limits.check_series(sum(len(item.devices) for item in recordings))
     return recordings
@@ -79,15 +82,13 @@ def read_files(
 def _no_column(error: ColumnError, field: str, which: str) -> Problem:
     """Problem of a table without a column that was named, or that it must have."""
     if error.field == "columns":
-        return invalid_value(_wire_name(error.columns[0]), f"{which}the table has no column of this name")
+        return invalid_value(
+            COLUMN_PARAMETERS[error.columns[0]], f"{which}the table has no column of this name"
+        )
     missing = ", ".join(error.columns)
     return invalid_value(
         field, f"{which}has no column for {missing} in its header; rename, or say which it is"
     )
-
-
-def _wire_name(role: str) -> str:
-    return f"{role.removesuffix('_m')}_column"
 
 
 def _refuse_unused(recording: Recording, columns: Mapping[str, str], time_unit: TimeUnit | None) -> None:
@@ -97,4 +98,4 @@ def _refuse_unused(recording: Recording, columns: Mapping[str, str], time_unit: 
     if time_unit is not None:
         raise invalid_value("time_unit", _FOR_TABLES)
     for role in columns:
-        raise invalid_value(_wire_name(role), _FOR_TABLES)
+        raise invalid_value(COLUMN_PARAMETERS[role], _FOR_TABLES)

@@ -37,9 +37,17 @@ NAMES: dict[str, tuple[str, ...]] = {
         *("accuracym", "accuracy", "acc", "accm", "horizontalaccuracy", "haccuracy", "hacc", "gpsaccuracy"),
         *("horizontalaccuracym", "accuracymeters"),
     ),
-    "ellipse_major_m": ("ellipsemajorm", "semimajorm"),
-    "ellipse_minor_m": ("ellipseminorm", "semiminorm"),
-    "ellipse_bearing_deg": ("ellipsebearingdeg",),
+    "ellipse_major_m": (
+        *("ellipsemajorm", "semimajorm", "semimajor", "semimajoraxis", "errorsemimajoraxis"),
+        *("argossemimajor", "smaj"),
+    ),
+    "ellipse_minor_m": (
+        *("ellipseminorm", "semiminorm", "semiminor", "semiminoraxis", "errorsemiminoraxis"),
+        *("argossemiminor", "smin"),
+    ),
+    "ellipse_bearing_deg": (
+        *("ellipsebearingdeg", "ellipseorientation", "errorellipseorientation", "argosorientation", "eor"),
+    ),
     "speed_mps": ("speedmps", "speed", "speedms", "gpsspeed", "velocity", "enhancedspeed"),
     "bearing_deg": ("bearingdeg", "bearing", "course", "heading", "headingdeg", "cog", "courseoverground"),
     "hdop": ("hdop",),

@@ -19,6 +19,7 @@ import numpy as np
 from estimators.adapters.tracks.assembly import assemble
 from estimators.adapters.tracks.recording import FIELD, Recording
 from estimators.arrays import FloatArray, InputError
+from estimators.trajectories.ellipse import RADIUS_68
 
 SENTENCE = re.compile(
     r"\$(?P<body>[A-Z]{2}(?P<kind>RMC|GGA|GST|VTG|ZDA|GLL),[^*$\r\n]*)"
@@ -30,8 +31,6 @@ _ANGLE = re.compile(r"(\d{1,3})(\d\d(?:\.\d*)?)", re.ASCII)
 _DECIMAL = re.compile(r"-?\d{1,15}(?:\.\d{0,15})?", re.ASCII)
 _MPS_PER_KNOT = 1852.0 / 3600.0
 _MPS_PER_KMH = 1.0 / 3.6
-_RADIUS_68 = math.sqrt(-2.0 * math.log(0.32))
-"""Radius of a circle that holds 68 % of a round normal error of sigma 1."""
 _DAY_NS = 86_400_000_000_000
 
 Epoch = dict[str, float | int]
@@ -179,7 +178,7 @@ def _read_gst(cells: list[str], epochs: list[Epoch]) -> None:
     found: Epoch = {}
     _numbers(found, cells, {"north": (6, 1.0), "east": (7, 1.0)})
     if len(found) == 2 and "accuracy_m" not in epoch:
-        epoch["accuracy_m"] = _RADIUS_68 * math.sqrt((found["north"] ** 2 + found["east"] ** 2) / 2.0)
+        epoch["accuracy_m"] = RADIUS_68 * math.sqrt((found["north"] ** 2 + found["east"] ** 2) / 2.0)
 
 
 def _read_vtg(cells: list[str], epochs: list[Epoch]) -> None:

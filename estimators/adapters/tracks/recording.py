@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from estimators.arrays import CodeArray, FloatArray, InputError, IntArray
+from estimators.trajectories.ellipse import accuracy_of_ellipse
 
 Moments: TypeAlias = npt.NDArray[np.datetime64]
 Offsets: TypeAlias = npt.NDArray[np.int16]
@@ -111,6 +112,20 @@ class Recording:
 
     def __len__(self) -> int:
         return int(self.time.size)
+
+    @property
+    def radius_m(self) -> FloatArray | None:
+        """Radius that holds 68 % of each row, for ``accuracy_m`` of :func:`estimators.clean_trajectory`.
+
+        As the format reports it, or where a row has none, the circle of its error ellipse; None if no row
+        has either.
+        """
+        if self.ellipse_major_m is None or self.ellipse_minor_m is None:
+            return self.accuracy_m
+        circle = accuracy_of_ellipse(self.ellipse_major_m, self.ellipse_minor_m)
+        if self.accuracy_m is None:
+            return circle
+        return np.where(np.isnan(self.accuracy_m), circle, self.accuracy_m)
 
     def part(self, rows: slice | IntArray) -> Recording:
         """Give some of the rows; a slice is a view, nothing is copied."""

@@ -13,7 +13,7 @@ import numpy as np
 
 from estimators.adapters.tracks.assembly import RANGES
 from estimators.adapters.tracks.cleaned import Cleaned
-from estimators.adapters.tracks.recording import Moments, Recording
+from estimators.adapters.tracks.recording import Moments, Offsets, Recording
 from estimators.arrays import BoolArray, FloatArray, InputError, IntArray
 
 PIECE_ROWS = 1 << 13
@@ -214,11 +214,16 @@ def clock_texts(recording: Recording, part: Rows, unit: Literal["s", "ms", "us",
     """ISO 8601 in the zone in which each time came; Z where that is UTC or was not said."""
     time: Moments = recording.time[part].astype("datetime64[ns]")
     offsets = recording.utc_offset_minutes
+    return zoned_texts(time, None if offsets is None else offsets[part], unit)
+
+
+def zoned_texts(time: Moments, offsets: Offsets | None, unit: Literal["s", "ms", "us", "ns"]) -> Texts:
+    """ISO 8601 of moments, each with its minutes east of UTC; None: all of them in UTC."""
     if offsets is None:
         return [
             None if text == "NaT" else f"{text}Z" for text in np.datetime_as_string(time, unit=unit).tolist()
         ]
-    minutes = offsets[part].astype(np.int64)
+    minutes = offsets.astype(np.int64)
     local = np.datetime_as_string(time + minutes.astype("timedelta64[m]"), unit=unit).tolist()
     zones = {value: _zone(value) for value in set(minutes.tolist())}
     return [

@@ -120,8 +120,12 @@ def _resume(state: str | bytes, lag: int | None, options: TrackOptions | None) -
     kept = stream.settings
     if lag is not None and lag != kept.lag:
         raise InputError("lag", f"the track began with {kept.lag}; send that, or begin anew without a state")
-    if options is not None and (options.sigma_m, options.max_speed_mps) != (kept.sigma_m, kept.max_speed_mps):
-        raise InputError(
-            "options", "are not those with which the track began; send those, or begin anew without a state"
-        )
+    for name in () if options is None else ("sigma_m", "max_speed_mps"):
+        began = getattr(kept, name)
+        if getattr(options, name) != began:
+            which = "without one" if began is None else f"with {began:g}"
+            raise InputError(
+                f"options.{name}",
+                f"the track began {which}; send the options of its beginning, or none, or begin anew",
+            )
     return stream

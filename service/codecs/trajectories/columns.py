@@ -2,38 +2,43 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import msgspec
 import numpy as np
 
 from estimators import InputError
 from estimators.adapters.tracks import assemble
 from estimators.adapters.tracks.assembly import code_names
-from estimators.adapters.tracks.moments import parse_moments
-from estimators.adapters.tracks.recording import Offsets
-from estimators.adapters.tracks.times import unit_of
 from service.codecs.arguments import refuse_absent, refuse_beside_json, validated
-from service.codecs.columns import TimeForm, Times
 from service.codecs.json import (
     decode_column,
     is_null,
     read_argument,
     read_numbers,
     read_object,
-    read_times,
 )
 from service.codecs.sent import Sent
+from service.codecs.trajectories.clock import read_clock
 from service.errors import invalid_value
-from service.schemas.fields import TimeUnit
 from service.schemas.trajectories import TrackArguments, TrackQuery
+from service.trajectories.ellipses import check_ellipse
 from service.trajectories.recorded import Recorded
 
 REQUIRED = ("time", "lat", "lon")
 #: Measured columns by their names in the body, and in a recording.
-MEASURED = {"height": "height_m", "accuracy": "accuracy_m"}
+MEASURED = {
+    "height": "height_m",
+    "accuracy": "accuracy_m",
+    "semi_major": "ellipse_major_m",
+    "semi_minor": "ellipse_minor_m",
+    "orientation": "ellipse_bearing_deg",
+    "speed": "speed_mps",
+    "bearing": "bearing_deg",
+}
 COLUMNS = (*REQUIRED, "device", *MEASURED)
 
 _LONGEST_NAME = 100
-_TEXTS = msgspec.json.Decoder(list[str | None])
 _NAMES = msgspec.json.Decoder(list[str | int | None])
 
 
@@ -52,15 +57,16 @@ def read_json_fixes(sent: Sent[TrackQuery]) -> tuple[Recorded, TrackArguments]:
         {name: read_argument(raw, name) for name, raw in fields.items() if name not in COLUMNS},
     )
     refuse_absent([name for name in REQUIRED if is_null(fields.get(name))])
-    time, form, offsets = _times(fields["time"], arguments.time_unit)
+    time, form, offsets = read_clock(fields["time"], arguments.time_unit)
     sent.limits.check_points(time.size)
-    numbers = {
-        name: read_numbers(fields[name], name)
-        for name in ("lat", "lon", *MEASURED)
-        if not is_null(fields.get(name))
-    }
+    given = {name: column for name, column in MEASURED.items() if not is_null(fields.get(name))}
+    check_ellipse(given.values(), {column: name for name, column in MEASURED.items()})
+    numbers = {name: read_numbers(fields[name], name) for name in ("lat", "lon", *given)}
     names = None if is_null(fields.get("device")) else _devices(fields["device"])
-    _check_lengths(time.size, {name: column.size for name, column in numbers.items()}, names)
+    if time.size == 0:
+        raise invalid_value("time", "is empty; send at least one fix")
+    lengths = {name: column.size for name, column in numbers.items()}
+    check_lengths(time.size, lengths if names is None else lengths | {"device": len(names)})
     sent.check()
     device, devices = (None, ()) if names is None else code_names(names)
     sent.limits.check_series(len(devices))
@@ -71,23 +77,13 @@ def read_json_fixes(sent: Sent[TrackQuery]) -> tuple[Recorded, TrackArguments]:
             lat=numbers["lat"],
             lon=numbers["lon"],
             offsets=offsets,
-            measured={column: numbers[name] for name, column in MEASURED.items() if name in numbers},
+            measured={column: numbers[name] for name, column in given.items()},
             device=device,
             devices=devices,
         )
     except InputError as error:
         raise invalid_value(error.field, error.message) from error
     return Recorded(recording, time, form, is_many=names is not None), arguments
-
-
-def _times(raw: msgspec.Raw, unit: TimeUnit | None) -> tuple[Times, TimeForm, Offsets | None]:
-    """Read times, the form they came in, and minutes east of UTC where they were written with a zone."""
-    time, form = read_times(raw, "time", unit)
-    if form.kind == "iso":
-        return time, form, parse_moments(decode_column(_TEXTS, raw, "time"))[1]
-    if form.kind == "number" and (told := unit_of(time.astype(np.float64))) is not None:
-        time, form = read_times(raw, "time", told)
-    return time, form, None
 
 
 def _devices(raw: msgspec.Raw) -> list[str]:
@@ -99,11 +95,8 @@ def _devices(raw: msgspec.Raw) -> list[str]:
     raise invalid_value("device", f"expected at most {_LONGEST_NAME} printable characters", row)
 
 
-def _check_lengths(rows: int, lengths: dict[str, int], names: list[str] | None) -> None:
-    if rows == 0:
-        raise invalid_value("time", "is empty; send at least one fix")
-    if names is not None:
-        lengths = {**lengths, "device": len(names)}
+def check_lengths(rows: int, lengths: Mapping[str, int]) -> None:
+    """Refuse columns of another length than the times."""
     for name, length in lengths.items():
         if length != rows:
             raise invalid_value(name, f"{length} entries for {rows} times; send one per time")

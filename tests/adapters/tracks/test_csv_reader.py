@@ -4,6 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from estimators import accuracy_of_ellipse
 from estimators.adapters.tracks import RowFault, read_track
 from estimators.arrays import InputError
 
@@ -21,6 +22,37 @@ def test_columns_are_known_by_their_usual_names() -> None:
     assert track.bearing_deg is not None
     assert (track.height_m[0], track.accuracy_m[0]) == (99.0, 12.0)
     assert np.isnan(track.bearing_deg).tolist() == [True, False]
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        "argos:semi-major,argos:semi-minor,argos:orientation",
+        "Error Semi-major axis,Error Semi-minor axis,Error Ellipse orientation",
+        "smaj,smin,eor",
+        "semi_major,semi_minor,ellipse_orientation",
+    ],
+)
+def test_error_ellipses_are_known_by_the_names_that_wildlife_trackers_write(header: str) -> None:
+    track = read_track(f"date,lat,lon,{header}\n2021-07-28 07:00:00,50,7,900,40,135\n".encode())
+    assert track.ellipse_major_m is not None
+    assert track.ellipse_minor_m is not None
+    assert track.ellipse_bearing_deg is not None
+    found = (track.ellipse_major_m[0], track.ellipse_minor_m[0], track.ellipse_bearing_deg[0])
+    assert found == (900.0, 40.0, 135.0)
+
+
+def test_the_radius_of_a_row_is_its_accuracy_or_the_circle_of_its_ellipse() -> None:
+    track = read_track(
+        b"t,lat,lon,accuracy,smaj,smin\n0,50,7,12,90,40\n1,50,7,,90,40\n2,50,7,,90,\n3,50,7,8,,\n"
+    )
+    assert track.radius_m is not None
+    circle = accuracy_of_ellipse([90.0], [40.0])[0]
+    np.testing.assert_array_equal(track.radius_m, [12.0, circle, np.nan, 8.0])
+
+
+def test_a_track_without_accuracies_and_ellipses_has_no_radii() -> None:
+    assert read_track(b"t,lat,lon,smaj\n0,50,7,90\n").radius_m is None
 
 
 @pytest.mark.parametrize("delimiter", [",", ";", "\t", "|"])

@@ -199,10 +199,17 @@ def test_another_lag_than_the_tracks_is_refused() -> None:
     assert len(SENT.send(10, 20, state).provisional) > 0
 
 
-def test_other_options_than_the_tracks_are_refused() -> None:
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (TrackOptions(), r"options\.max_speed_mps: the track began with 40"),
+        (TrackOptions(sigma_m=3.0, max_speed_mps=40.0), r"options\.sigma_m: the track began without one"),
+    ],
+)
+def test_other_options_than_the_tracks_are_refused(options: TrackOptions, message: str) -> None:
     state = SENT.send(0, 10, options=TrackOptions(max_speed_mps=40.0)).state
-    with pytest.raises(InputError, match="options"):
-        SENT.send(10, 20, state, options=TrackOptions())
+    with pytest.raises(InputError, match=message):
+        SENT.send(10, 20, state, options=options)
 
 
 def test_another_kind_of_times_is_refused() -> None:
