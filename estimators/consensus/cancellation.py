@@ -47,6 +47,18 @@ def cancelled_by(flag: CodeArray) -> Iterator[None]:
         _flag.reset(token)
 
 
+def stop_if_cancelled() -> None:
+    """Go on only if nobody has set the flag: for what runs between two kernels.
+
+    Raises
+    ------
+    Cancelled
+        If the caller's flag was set.
+    """
+    if _flag.get()[0]:
+        raise Cancelled
+
+
 def cancel_flag() -> CodeArray:
     """Return the flag that compiled code should poll; outside :func:`cancelled_by`, one that is never set."""
     return _flag.get()

@@ -66,6 +66,8 @@ def clean_trajectory(
     ------
     InputError
         If columns differ in length or hold no numbers, or a setting is out of range.
+    Cancelled
+        If the caller's flag was set (:mod:`estimators.consensus.cancellation`).
 
     Notes
     -----

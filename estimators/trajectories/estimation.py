@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from estimators.arrays import BoolArray, CodeArray, FloatArray
+from estimators.consensus.cancellation import stop_if_cancelled
 from estimators.trajectories.climbing import climb, mean_square
 from estimators.trajectories.labelling.beam import HOPELESS, WIDTH
 from estimators.trajectories.labelling.evidence import judge_labels
@@ -196,6 +197,7 @@ def estimate(measured: Measured, sigma_m: float | None = None, top_speed: float 
 
     def under(labels: list[CodeArray]) -> Callable[[FloatArray], float]:
         def evidence(logs: FloatArray) -> float:
+            stop_if_cancelled()
             parameters = _parameters(logs, rates)
             judged = [judge(window, parameters, given) for window, given in zip(windows, labels, strict=True)]
             return sum(judged) - penalty(logs)

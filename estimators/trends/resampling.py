@@ -16,7 +16,7 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from estimators.arrays import FloatArray
-from estimators.consensus.cancellation import Cancelled, cancel_flag
+from estimators.consensus.cancellation import stop_if_cancelled
 from estimators.inference.blocks import block_correction, block_length, drawn_blocks, shuffled_blocks
 from estimators.inference.hac import long_run
 from estimators.inference.resampled import permutation_p, widening
@@ -219,7 +219,7 @@ def _bootstrap(fitted: Fitted[_Spread], level: float, resamples: int, seed: int)
     block = block_length(n, own.spread.lag1)
     statistics: list[FloatArray] = []
     for replicate in range(resamples):
-        _stop_if_cancelled()
+        stop_if_cancelled()
         noise = whitened[drawn_blocks(n, block, seed, replicate)]
         again = fitted.again(curve + (noise if root is None else noise / root))
         # Another structure says how stable the answer is, not how far off a right one may be.
@@ -246,7 +246,7 @@ def _permutation(fitted: Fitted[_Spread], resamples: int, seed: int) -> Inferred
     trend, nothing = fitted.axes[:1], np.zeros(own.theta.size)
     statistics: list[float] = []
     for replicate in range(resamples):
-        _stop_if_cancelled()
+        stop_if_cancelled()
         shuffled = whitened[shuffled_blocks(n, block, seed, replicate)]
         again = fitted.again(fitted.beside + (shuffled if root is None else shuffled / root))
         # A series in which nothing is found shows no trend.
@@ -275,8 +275,3 @@ def _is_same(fitted: Fitted[_Spread], again: Refit[_Spread]) -> bool:
     # without those replicates intervals of clean series cover 2 to 3 % less often than they say.
     off = np.abs(again.curve - own.curve)
     return bool(np.all(off <= np.maximum(_SAME_SIGMAS * own.sigma, _SAME_STDERRS * fitted.stderr)))
-
-
-def _stop_if_cancelled() -> None:
-    if cancel_flag()[0]:
-        raise Cancelled

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 
 from service.api.computing import compute_answer, read_body, sent_by
 from service.codecs.negotiation import media_type_of
-from service.codecs.offers import choose_offer
+from service.codecs.offers import Offer, choose_offer
 from service.codecs.sent import Sent
 from service.compute import Patience
 from service.observability.timing import Stopwatch
@@ -19,15 +18,8 @@ from service.schemas.responses import computed_responses
 router = APIRouter(prefix="/v1", tags=["trajectories"])
 
 JSON = "application/json"
-
-
-@dataclass(frozen=True, slots=True)
-class _Json:
-    """The one form of the answer."""
-
-    name: str = "json"
-    media_type: str = JSON
-    content_type: str = JSON
+_JSON_ANSWER: Offer[str] = Offer("json", JSON, JSON)
+"""The one form of the answer."""
 
 
 @router.post(
@@ -52,7 +44,7 @@ async def clean(request: Request, query: Annotated[LiveQuery, Query()]) -> Respo
     rows were cut into calls.
     """
     headers = request.headers
-    form = choose_offer([_Json()], headers.get("accept"), query.format)
+    form = choose_offer([_JSON_ANSWER], headers.get("accept"), query.format)
     media_type_of(headers.get("content-type"), headers.get("content-encoding"), [JSON])
     body = await read_body(request)
     watch = Stopwatch()

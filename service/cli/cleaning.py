@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -12,6 +13,8 @@ import typer
 
 from estimators import NoFit
 from estimators.adapters.tracks.source import Source
+from service.cli.cleaning_rows import clean_rows, is_of_rows
+from service.cli.making import Made
 from service.cli.streams import NO_TREND, answers, fail, remark
 from service.codecs.arguments import validated
 from service.codecs.limits import Limits
@@ -19,7 +22,7 @@ from service.codecs.trajectories.registry import WRITERS, TrackWriter
 from service.errors import Problem, ProblemType
 from service.schemas.fields import Theme
 from service.schemas.trajectories import Figure, TrackAnswerQuery, TrackArguments
-from service.trajectories.cleaned import CleanedTracks, DeviceTrack, clean_recorded, refusal_of
+from service.trajectories.cleaned import CleanedTracks, clean_recorded, refusal_of
 from service.trajectories.files import read_files
 from service.trajectories.recorded import Recorded, of_files
 
@@ -78,6 +81,9 @@ def run_clean(request: CleanRequest) -> None:
     ----------
     request : CleanRequest
     """
+    # Before pyarrow is imported, which reads it once. Its own pools keep what they have had: on ten million
+    # rows that is a hundred megabytes.
+    os.environ.setdefault("ARROW_DEFAULT_MEMORY_POOL", "system")
     form = _form(request)
     writer = next((row for row in WRITERS if row.name == form), None)
     artist = None if request.plot is None else _artist(request.plot)
@@ -89,17 +95,23 @@ def run_clean(request: CleanRequest) -> None:
         recorded = _read(request, arguments)
         for chosen in filter(None, (writer, artist)):
             chosen.check(recorded)
-        cleaned = clean_recorded(recorded, arguments, lambda _done, _total: None)
+        cleaned = None
+        if artist is None and is_of_rows(form, points=request.points):
+            made = clean_rows(recorded, arguments, form)
+        else:
+            cleaned = clean_recorded(recorded, arguments, lambda _done, _total: None)
+            made = _made(cleaned, writer, points=request.points)
     except Problem as problem:
         fail(f"{source}: {problem.detail.rstrip('.')}.", 1 if problem.kind is ProblemType.no_track else 2)
-    refused = [item for item in cleaned.tracks if isinstance(item.answer, NoFit)]
-    if len(refused) == len(cleaned.tracks):
-        fail(f"{source}: no device has a track; {_why(refused[0])}.", NO_TREND)
-    _put(_pieces(cleaned, writer, points=request.points), request.output, is_text=writer is None)
-    if request.plot is not None and artist is not None:
+    except OSError as error:
+        fail(f"temporary files cannot be written ({error.strerror}); set TMPDIR to a folder with more room.")
+    if not made.has_track:
+        fail(f"{source}: no device has a track; {_why(made.refused[0][1])}.", NO_TREND)
+    _put(made.pieces, request.output, is_text=writer is None)
+    if request.plot is not None and artist is not None and cleaned is not None:
         _draw(cleaned, artist, request.plot, request)
-    for item in refused:
-        remark(f"{_name(item)} has no track: {_why(item)}.")
+    for device, told in made.refused:
+        remark(f"{_name(device)} has no track: {_why(told)}.")
 
 
 def _form(request: CleanRequest) -> CleanOutput:
@@ -158,6 +170,12 @@ def _source(file: str) -> Source:
     return path
 
 
+def _made(cleaned: CleanedTracks, writer: TrackWriter | None, *, points: bool) -> Made:
+    refused = [(item.device, item.answer) for item in cleaned.tracks if isinstance(item.answer, NoFit)]
+    pieces = _pieces(cleaned, writer, points=points)
+    return Made(pieces, refused, has_track=len(refused) < len(cleaned.tracks))
+
+
 def _pieces(cleaned: CleanedTracks, writer: TrackWriter | None, *, points: bool) -> Iterator[bytes]:
     if writer is None:
         return _summaries(cleaned)
@@ -170,7 +188,7 @@ def _summaries(cleaned: CleanedTracks) -> Iterator[bytes]:
     """Text for people, a piece for each track."""
     told = [item for item in cleaned.tracks if not isinstance(item.answer, NoFit)]
     for place, item in enumerate(told):
-        title = f"{_name(item)}\n" if cleaned.recorded.is_many else ""
+        title = f"{_name(item.device)}\n" if cleaned.recorded.is_many else ""
         yield f"{chr(10) if place else ''}{title}{item.answer.summary()}\n".encode()
 
 
@@ -179,14 +197,12 @@ def _ended(pieces: Iterator[bytes]) -> Iterator[bytes]:
     yield b"\n"
 
 
-def _name(item: DeviceTrack) -> str:
-    return item.device or "(no name)"
+def _name(device: str | None) -> str:
+    return device or "(no name)"
 
 
-def _why(item: DeviceTrack) -> str:
-    if not isinstance(item.answer, NoFit):
-        raise TypeError("a track has no reason why it is none")
-    return str(refusal_of(item.answer)["message"]).rstrip(".")
+def _why(told: NoFit) -> str:
+    return str(refusal_of(told)["message"]).rstrip(".")
 
 
 def _put(pieces: Iterator[bytes], output: Path | None, *, is_text: bool) -> None:

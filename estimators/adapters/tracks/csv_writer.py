@@ -7,7 +7,7 @@ from itertools import chain
 
 from estimators.adapters.tracks.cleaned import Cleaned
 from estimators.adapters.tracks.recording import Recording
-from estimators.adapters.tracks.written_columns import PIECE_ROWS, Column, Precision, Texts, written_columns
+from estimators.adapters.tracks.written_columns import PIECE_ROWS, Column, Layout, Texts, written_columns
 
 _FORMULA = ("=", "+", "-", "@", "\t")
 
@@ -41,11 +41,11 @@ def write_csv(recording: Recording, cleaned: Cleaned | None = None) -> Iterator[
     return chain([_header(columns)], _rows(columns, len(recording)))
 
 
-def stream_csv(pairs: Iterable[tuple[Recording, Cleaned]], precision: Precision) -> Iterator[bytes]:
+def stream_csv(pairs: Iterable[tuple[Recording, Cleaned]], layout: Layout) -> Iterator[bytes]:
     """Write rows as they come with what is said of them, under one header; otherwise as :func:`write_csv`."""
     is_first = True
     for recording, cleaned in pairs:
-        columns = list(written_columns(recording, cleaned, precision).values())
+        columns = list(written_columns(recording, cleaned, layout).values())
         if is_first:
             yield _header(columns)
         is_first = False

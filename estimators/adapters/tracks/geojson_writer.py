@@ -14,7 +14,7 @@ from estimators.adapters.tracks.recording import Recording
 from estimators.adapters.tracks.written_columns import (
     PIECE_ROWS,
     Column,
-    Precision,
+    Layout,
     clock_texts,
     clock_unit,
     position_digits,
@@ -66,14 +66,12 @@ def write_geojson(
     return chain([_HEAD], _points(columns, len(recording)), [_TAIL])
 
 
-def stream_geojson_points(
-    pairs: Iterable[tuple[Recording, Cleaned]], precision: Precision
-) -> Iterator[bytes]:
+def stream_geojson_points(pairs: Iterable[tuple[Recording, Cleaned]], layout: Layout) -> Iterator[bytes]:
     """Write a point for each row as they come; otherwise as :func:`write_geojson` does."""
     yield _HEAD
     comma = b""
     for recording, cleaned in pairs:
-        for piece in _points(written_columns(recording, cleaned, precision), len(recording)):
+        for piece in _points(written_columns(recording, cleaned, layout), len(recording)):
             yield comma + piece
             comma = b",\n"
     yield _TAIL

@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Generator, Iterable, Iterator
+from dataclasses import replace
 from typing import TypeAlias
 from xml.sax.saxutils import escape
 
@@ -19,7 +20,7 @@ from estimators.adapters.tracks.recording import Recording
 from estimators.adapters.tracks.written_columns import (
     PIECE_ROWS,
     Column,
-    Precision,
+    Layout,
     positions,
     written_columns,
 )
@@ -66,10 +67,14 @@ def write_gpx(recording: Recording, cleaned: Cleaned | None = None) -> Iterator[
     <trkpt lat="48.8300000" lon="2.4400000"><time>2021-07-28T09:19:04+02:00</time></trkpt>
     """
     _refuse_numbers(recording)
-    return _pieces(recording, written_columns(recording, cleaned), _rows(recording, cleaned))
+    columns = written_columns(recording, cleaned)
+    lat, lon, _ = positions(recording, cleaned)
+    rows = np.flatnonzero(np.isfinite(lat) & np.isfinite(lon))
+    order = grouped_order(recording.part(rows))
+    return _pieces(recording, columns, rows if order is None else rows[order])
 
 
-def stream_gpx(pairs: Iterable[tuple[Recording, Cleaned]], precision: Precision) -> Iterator[bytes]:
+def stream_gpx(pairs: Iterable[tuple[Recording, Cleaned]], layout: Layout) -> Iterator[bytes]:
     """Write points as they come, a new track where the device changes and a new segment where that does.
 
     Raises
@@ -77,13 +82,31 @@ def stream_gpx(pairs: Iterable[tuple[Recording, Cleaned]], precision: Precision)
     InputError
         If the times are plain numbers, which GPX cannot hold.
     """
+    layout = replace(layout, epoch=None)
     yield _HEAD.encode()
     last: Place | None = None
     for recording, cleaned in pairs:
         _refuse_numbers(recording)
         rows = np.flatnonzero(np.isfinite(cleaned.lat) & np.isfinite(cleaned.lon))
-        last = yield from _track_points(recording, written_columns(recording, cleaned, precision), rows, last)
+        last = yield from _track_points(recording, written_columns(recording, cleaned, layout), rows, last)
     yield _closing(last, closes_track=True) + b"</gpx>\n"
+
+
+def grouped_order(recording: Recording) -> IntArray | None:
+    """Rows by device and segment, in input order within them; None where they come so.
+
+    Examples
+    --------
+    >>> track = Recording("csv", np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3, dtype=np.uint8))
+    >>> grouped_order(track) is None, grouped_order(replace(track, segment=np.array([0, 1, 0]))).tolist()
+    (True, [0, 2, 1])
+    """
+    keys = [key for key in (recording.segment, recording.device) if key is not None]
+    descends = np.zeros(max(len(recording) - 1, 0), dtype=np.bool_)
+    for key in keys:
+        # The last key is the device, which goes before the segment.
+        descends = (key[1:] < key[:-1]) | ((key[1:] == key[:-1]) & descends)
+    return np.lexsort(keys) if descends.any() else None
 
 
 def _track_points(
@@ -133,14 +156,6 @@ def _runs(device: IntArray, segment: IntArray) -> list[tuple[int, int]]:
     changes = np.flatnonzero((np.diff(device) != 0) | (np.diff(segment) != 0)) + 1
     edges = [0, *changes.tolist(), device.size] if device.size else []
     return list(itertools.pairwise(edges))
-
-
-def _rows(recording: Recording, cleaned: Cleaned | None) -> IntArray:
-    """Rows that have a position, grouped by device and segment, in input order within them."""
-    lat, lon, _ = positions(recording, cleaned)
-    rows = np.flatnonzero(np.isfinite(lat) & np.isfinite(lon))
-    keys = [key[rows] for key in (recording.segment, recording.device) if key is not None]
-    return rows[np.lexsort(keys)] if keys else rows
 
 
 def _pieces(recording: Recording, columns: dict[str, Column], rows: IntArray) -> Iterator[bytes]:

@@ -14,14 +14,14 @@ import numpy as np
 from estimators.adapters.tracks.cleaned import Cleaned
 from estimators.adapters.tracks.column_values import column_values
 from estimators.adapters.tracks.recording import FIELD, Recording
-from estimators.adapters.tracks.written_columns import Precision
+from estimators.adapters.tracks.written_columns import Layout, epoch_numbers, zone_text
 from estimators.arrays import InputError
 
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
 
 
-def stream_parquet(pairs: Iterable[tuple[Recording, Cleaned]], _precision: Precision) -> Iterator[bytes]:
+def stream_parquet(pairs: Iterable[tuple[Recording, Cleaned]], layout: Layout) -> Iterator[bytes]:
     """Write Parquet, a row group for each piece.
 
     Parameters
@@ -35,13 +35,13 @@ def stream_parquet(pairs: Iterable[tuple[Recording, Cleaned]], _precision: Preci
         If pyarrow is not installed.
     """
     _, pq = _pyarrow()
-    return _written(pairs, pq.ParquetWriter)
+    return _written(pairs, layout, pq.ParquetWriter)
 
 
-def stream_arrow(pairs: Iterable[tuple[Recording, Cleaned]], _precision: Precision) -> Iterator[bytes]:
+def stream_arrow(pairs: Iterable[tuple[Recording, Cleaned]], layout: Layout) -> Iterator[bytes]:
     """Write an Arrow IPC stream, a batch for each piece; otherwise as :func:`stream_parquet`."""
     pa, _ = _pyarrow()
-    return _written(pairs, pa.ipc.new_stream)
+    return _written(pairs, layout, pa.ipc.new_stream)
 
 
 def _pyarrow() -> tuple[Any, Any]:
@@ -82,11 +82,11 @@ class _Drain(io.RawIOBase):
         return held
 
 
-def _written(pairs: Iterable[tuple[Recording, Cleaned]], opened: Any) -> Iterator[bytes]:
+def _written(pairs: Iterable[tuple[Recording, Cleaned]], layout: Layout, opened: Any) -> Iterator[bytes]:
     drain = _Drain()
     writer: Any = None
     for recording, cleaned in pairs:
-        table = _table(recording, cleaned)
+        table = _table(recording, cleaned, layout)
         if writer is None:
             writer = opened(drain, table.schema)
         writer.write_table(table)
@@ -96,10 +96,12 @@ def _written(pairs: Iterable[tuple[Recording, Cleaned]], opened: Any) -> Iterato
     yield drain.emptied()
 
 
-def _table(recording: Recording, cleaned: Cleaned) -> Any:
+def _table(recording: Recording, cleaned: Cleaned, layout: Layout) -> Any:
     pa, _ = _pyarrow()
-    columns = {name: _array(values) for name, values in column_values(recording, cleaned).items()}
-    return pa.table({"time": _times(recording), **columns})
+    columns = _times(recording, layout)
+    columns |= {name: _array(values) for name, values in column_values(recording, cleaned).items()}
+    noted = {"plumbline.method": layout.method} if layout.method else None
+    return pa.table(columns).replace_schema_metadata(noted)
 
 
 def _array(values: Any) -> Any:
@@ -116,8 +118,17 @@ def _numbers(values: Any) -> Any:
     return pa.array(values, mask=~np.isfinite(values))
 
 
-def _times(recording: Recording) -> Any:
+def _times(recording: Recording, layout: Layout) -> dict[str, Any]:
+    """Give times in the form they came; a zone that all share is the column's, others stand beside it."""
     pa, _ = _pyarrow()
-    if recording.time.dtype.kind == "M":
-        return pa.array(recording.time.astype("datetime64[ns]"), type=pa.timestamp("ns", tz="UTC"))
-    return _numbers(recording.time)
+    if recording.time.dtype.kind != "M":
+        return {"time": _numbers(recording.time)}
+    moments = recording.time.astype("datetime64[ns]")
+    if layout.epoch is not None:
+        numbers, missing = epoch_numbers(moments, layout)
+        return {"time": pa.array(numbers, mask=missing)}
+    if layout.zone_minutes is None:
+        utc = pa.array(moments, type=pa.timestamp("ns", tz="UTC"))
+        return {"time": utc, "utc_offset_minutes": pa.array(recording.utc_offset_minutes)}
+    zone = "UTC" if layout.zone_minutes == 0 else zone_text(layout.zone_minutes)
+    return {"time": pa.array(moments, type=pa.timestamp("ns", tz=zone))}

@@ -18,7 +18,8 @@ from estimators.adapters.tracks.recording import Moments, Offsets
 from estimators.arrays import BoolArray, FloatArray, InputError, IntArray
 
 TimeUnit = Literal["s", "ms", "us", "ns"]
-_NANOSECONDS: dict[str, int] = {"s": 1_000_000_000, "ms": 1_000_000, "us": 1_000, "ns": 1}
+NANOSECONDS: dict[TimeUnit, int] = {"s": 1_000_000_000, "ms": 1_000_000, "us": 1_000, "ns": 1}
+"""In a unit, from the coarsest to the finest."""
 _BORDERS: tuple[tuple[float, TimeUnit], ...] = ((1e17, "ns"), (1e14, "us"), (1e11, "ms"))
 
 Timed = tuple[Moments | FloatArray, Offsets | None, BoolArray]
@@ -57,7 +58,7 @@ def times_of_numbers(values: FloatArray, unreadable: BoolArray, unit: TimeUnit |
             with np.errstate(invalid="ignore"):
                 sound = np.abs(values) <= _BORDERS[-1][0]
             return np.where(sound, values, np.nan), None, unreadable | (~sound & ~np.isnan(values))
-    step = _NANOSECONDS[unit]
+    step = NANOSECONDS[unit]
     with np.errstate(invalid="ignore"):
         sound = np.abs(values) < 9.2e18 / step
     if not sound.any() and np.isfinite(values).any():

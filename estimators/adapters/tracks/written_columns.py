@@ -14,6 +14,7 @@ import numpy as np
 from estimators.adapters.tracks.assembly import RANGES
 from estimators.adapters.tracks.cleaned import Cleaned
 from estimators.adapters.tracks.recording import Moments, Offsets, Recording
+from estimators.adapters.tracks.times import NANOSECONDS, TimeUnit
 from estimators.arrays import BoolArray, FloatArray, InputError, IntArray
 
 PIECE_ROWS = 1 << 13
@@ -46,28 +47,47 @@ class Column:
 
 
 @dataclass(frozen=True, slots=True)
-class Precision:
-    """How finely a recording is written, wherever it is cut.
+class Layout:
+    """What has to be known of a whole recording to write a part of it.
 
     Parameters
     ----------
     digits : int
         Of degrees, after the point.
     unit : {"s", "ms", "us", "ns"}
-        Of points in time.
+        The coarsest in which no point in time is rounded.
+    zone_minutes : int or None
+        East of UTC, of the zone that all times share; None where they differ.
+    epoch : {"s", "ms", "us", "ns"}, optional
+        Points in time are written as numbers of these since 1970, where the format takes numbers. Default: as
+        points in time.
+    method : str
+        By which the track was cleaned, for formats that have a place for it; empty: not said.
     """
 
     digits: int
-    unit: Literal["s", "ms", "us", "ns"]
+    unit: TimeUnit
+    zone_minutes: int | None = 0
+    epoch: TimeUnit | None = None
+    method: str = ""
+
+    @property
+    def counts_whole(self) -> bool:
+        """Whether numbers since 1970 are integers."""
+        return self.epoch is not None and NANOSECONDS[self.epoch] <= NANOSECONDS[self.unit]
 
 
-def precision_of(recording: Recording) -> Precision:
-    """Precision with which nothing of a recording is lost."""
-    return Precision(position_digits(recording), clock_unit(recording))
+def layout_of(recording: Recording, *, epoch: TimeUnit | None = None, method: str = "") -> Layout:
+    """Layout with which nothing of a recording is lost; ``epoch`` and ``method`` as in :class:`Layout`."""
+    offsets = recording.utc_offset_minutes
+    zone: int | None = 0
+    if offsets is not None:
+        zone = int(offsets[0]) if bool(np.all(offsets == offsets[0])) else None
+    return Layout(position_digits(recording), clock_unit(recording), zone, epoch, method)
 
 
 def written_columns(
-    recording: Recording, cleaned: Cleaned | None, precision: Precision | None = None
+    recording: Recording, cleaned: Cleaned | None, layout: Layout | None = None
 ) -> dict[str, Column]:
     """Columns by name, in the order in which they are written.
 
@@ -76,7 +96,7 @@ def written_columns(
     recording : Recording
     cleaned : Cleaned, optional
         Its positions then are ``lat`` and ``lon``, and the recorded ones ``raw_lat`` and ``raw_lon``.
-    precision : Precision, optional
+    layout : Layout, optional
         That of the whole, if the recording is part of a longer one. Default: its own.
 
     Raises
@@ -86,13 +106,13 @@ def written_columns(
     """
     if cleaned is not None and len(cleaned.lat) != len(recording):
         raise InputError("cleaned", f"has {len(cleaned.lat)} rows where the recording has {len(recording)}")
-    precision = precision or precision_of(recording)
-    columns: dict[str, Column] = {"time": _time(recording, precision.unit)}
+    layout = layout or layout_of(recording)
+    columns: dict[str, Column] = {"time": _time(recording, layout)}
     if recording.devices:
         columns["device"] = Column("device", "text", lambda part: _devices(recording, part))
     if recording.segment is not None:
         columns["segment"] = _number("segment", recording.segment, str)
-    digits = precision.digits
+    digits = layout.digits
     lat, lon, height = positions(recording, cleaned)
     columns |= {name: _fixed(name, values, digits) for name, values in (("lat", lat), ("lon", lon))}
     if height is not None:
@@ -188,19 +208,42 @@ def _devices(recording: Recording, part: Rows) -> Texts:
     return [recording.devices[place] for place in recording.device[part].tolist()]
 
 
-def _time(recording: Recording, unit: Literal["s", "ms", "us", "ns"]) -> Column:
+def _time(recording: Recording, layout: Layout) -> Column:
     if recording.time.dtype.kind != "M":
         return _number("time", recording.time, _shortest)
-    return Column("time", "text", lambda part: clock_texts(recording, part, unit))
+    if layout.epoch is not None:
+        return Column("time", "number", lambda part: _epoch_texts(recording, part, layout))
+    return Column("time", "text", lambda part: clock_texts(recording, part, layout.unit))
 
 
-def clock_unit(recording: Recording) -> Literal["s", "ms", "us", "ns"]:
+def epoch_numbers(moments: Moments, layout: Layout) -> tuple[FloatArray | IntArray, BoolArray]:
+    """Numbers since 1970 in the unit of a layout, integers if all of the whole are, and where there is none.
+
+    Examples
+    --------
+    >>> moments = np.array(["1970-01-01T00:00:02.500", "NaT"], dtype="datetime64[ns]")
+    >>> epoch_numbers(moments, Layout(7, "ms", epoch="s"))[0].tolist()[0]
+    2.5
+    """
+    missing = np.isnat(moments)
+    step = NANOSECONDS[layout.epoch or "s"]
+    quotient, rest = np.divmod(moments.astype(np.int64), step)
+    return quotient if layout.counts_whole else quotient + rest / step, missing
+
+
+def _epoch_texts(recording: Recording, part: Rows, layout: Layout) -> Texts:
+    numbers, missing = epoch_numbers(recording.time[part].astype("datetime64[ns]"), layout)
+    return [
+        None if gone else _shortest(number)
+        for number, gone in zip(numbers.tolist(), missing.tolist(), strict=True)
+    ]
+
+
+def clock_unit(recording: Recording) -> TimeUnit:
     """Coarsest unit in which no time of the recording is rounded."""
     if recording.time.dtype.kind != "M":
         return "s"
-    steps: list[tuple[Literal["s", "ms", "us", "ns"], int]] = [
-        ("s", 1_000_000_000), ("ms", 1_000_000), ("us", 1_000), ("ns", 1)
-    ]  # fmt: skip
+    steps = list(NANOSECONDS.items())
     place = 0
     for first in range(0, len(recording), _AT_ONCE):
         moments = recording.time[first : first + _AT_ONCE]
@@ -210,7 +253,7 @@ def clock_unit(recording: Recording) -> Literal["s", "ms", "us", "ns"]:
     return steps[place][0]
 
 
-def clock_texts(recording: Recording, part: Rows, unit: Literal["s", "ms", "us", "ns"]) -> Texts:
+def clock_texts(recording: Recording, part: Rows, unit: TimeUnit) -> Texts:
     """ISO 8601 in the zone in which each time came; Z where that is UTC or was not said."""
     time: Moments = recording.time[part].astype("datetime64[ns]")
     offsets = recording.utc_offset_minutes
@@ -225,14 +268,15 @@ def zoned_texts(time: Moments, offsets: Offsets | None, unit: Literal["s", "ms",
         ]
     minutes = offsets.astype(np.int64)
     local = np.datetime_as_string(time + minutes.astype("timedelta64[m]"), unit=unit).tolist()
-    zones = {value: _zone(value) for value in set(minutes.tolist())}
+    zones = {value: zone_text(value) for value in set(minutes.tolist())}
     return [
         None if text == "NaT" else text + zones[offset]
         for text, offset in zip(local, minutes.tolist(), strict=True)
     ]
 
 
-def _zone(minutes: int) -> str:
+def zone_text(minutes: int) -> str:
+    """Zone as ISO 8601 writes it, from minutes east of UTC."""
     if minutes == 0:
         return "Z"
     return f"{'-' if minutes < 0 else '+'}{abs(minutes) // 60:02d}:{abs(minutes) % 60:02d}"

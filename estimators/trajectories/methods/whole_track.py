@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from estimators.arrays import CodeArray, FloatArray
+from estimators.consensus.cancellation import stop_if_cancelled
 from estimators.trajectories.estimation import Measured, estimate, judge
 from estimators.trajectories.labelling.backward import turned_round
 from estimators.trajectories.labelling.passage import Passage
@@ -60,6 +61,7 @@ def _follow(track: Measured | MeasuredRows, parameters: TrackParameters, top_spe
     """Follow a track from end to end, piece by piece."""
     passage = Passage(track.size, parameters, LAG, hopeless=_HOPELESS, top_speed=top_speed)
     for first in range(0, track.size, _PIECE):
+        stop_if_cancelled()
         stop = min(first + _PIECE, track.size)
         # The row before a piece is handed over with it.
         piece = track.window(max(first - 1, 0), stop)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from estimators.arrays import CodeArray, FloatArray
+from estimators.consensus.cancellation import stop_if_cancelled
 from estimators.trajectories.labelling.modes import ADRIFT, LEVEL_STRIDE, MISSING, SPIKE
 from estimators.trajectories.parameters import TrackParameters
 from estimators.trajectories.projected import Projected
@@ -153,6 +154,7 @@ class Smoothing:
         states: FloatArray,
         covariances: FloatArray,
     ) -> int:
+        stop_if_cancelled()
         parameters = self._parameters
         return smooth_piece(
             self._t[part],

@@ -56,6 +56,13 @@ def clean(
     accuracy: Annotated[
         str | None, typer.Option(metavar="COL", help="Tables: column of the accuracies (68 % radii).")
     ] = None,
+    speed: Annotated[
+        str | None, typer.Option(metavar="COL", help="Tables: column of the speeds over ground, m/s.")
+    ] = None,
+    bearing: Annotated[
+        str | None,
+        typer.Option(metavar="COL", help="Tables: column of the courses, degrees clockwise from north."),
+    ] = None,
     time_unit: TimeUnit = None,
     plot: Annotated[
         Path | None,
@@ -83,6 +90,8 @@ def clean(
                 "device": device,
                 "height_m": height,
                 "accuracy_m": accuracy,
+                "speed_mps": speed,
+                "bearing_deg": bearing,
             },
             arguments={
                 "method": method,
