@@ -23,8 +23,6 @@ _GAP_STEPS = 10.0
 _GAP_M = 100.0
 """A gap is ten steps long or longer, and leaves the position that uncertain."""
 _FEW = 5
-_MANY, _WINDOW = 1 << 20, 1 << 13
-"""The typical step of a track of more rows is that of windows of so many, together as many."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,21 +80,13 @@ def find_gaps(t: FloatArray, parameters: TrackParameters) -> list[int]:
     """Places after which there is a gap."""
     if t.size <= _FEW:
         return []
-    typical = _typical_step(t)
+    typical = float(np.median(np.diff(t), overwrite_input=True))
     found: list[int] = []
     for first in range(0, t.size - 1, BLOCK):
         steps = np.diff(t[first : first + BLOCK + 1])
         hidden = np.sqrt(parameters.manoeuvre * steps**3 / 3.0)
         found += (first + np.flatnonzero((steps > _GAP_STEPS * typical) & (hidden > _GAP_M))).tolist()
     return found
-
-
-def _typical_step(t: FloatArray) -> float:
-    """Median step; of a long track that of windows evenly spread, since all steps take as much room."""
-    if t.size <= _MANY:
-        return float(np.median(np.diff(t)))
-    firsts = np.linspace(0, t.size - _WINDOW, _MANY // _WINDOW).astype(np.int64).tolist()
-    return float(np.median(np.concatenate([np.diff(t[first : first + _WINDOW]) for first in firsts])))
 
 
 def _mark_whole(codes: CodeArray, rows: Rows, off: BoolArray, gaps: list[int]) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from estimators import NoFit, clean_in_pieces, clean_trajectory
+from estimators import clean_trajectory
 from estimators.consensus.cancellation import Cancelled, cancelled_by
 from estimators.trajectories import course
 from estimators.trajectories.methods import whole_track
@@ -48,11 +48,3 @@ def test_a_flag_set_while_a_long_track_is_worked_on_ends_it_at_the_next_piece(
     with cancelled_by(flag), pytest.raises(Cancelled):
         clean_trajectory(*columns())
     assert len(calls) == 1
-
-
-def test_pieces_that_nobody_waits_for_are_not_made() -> None:
-    flag = np.zeros(1, dtype=np.uint8)
-    with cancelled_by(flag):
-        found = clean_in_pieces(*columns(), piece_rows=100)
-        assert not isinstance(found, NoFit)
-    assert len(next(iter(found))) == 100
