@@ -1,8 +1,5 @@
 """``plumbline methods`` and ``plumbline models``."""
 
-# The imports inside of the commands keep `--help` quick.
-# ruff: noqa: PLC0415
-
 from __future__ import annotations
 
 

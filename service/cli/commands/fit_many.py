@@ -1,8 +1,5 @@
 """``plumbline fit-many``: its options."""
 
-# The imports inside of the commands keep `--help` quick.
-# ruff: noqa: PLC0415
-
 from __future__ import annotations
 
 from typing import Annotated
