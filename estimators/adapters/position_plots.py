@@ -7,7 +7,7 @@ colour; the colours are those of Okabe and Ito (2008). The same answer gives the
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -16,8 +16,6 @@ from estimators.adapters.figure_sheet import Palette
 from estimators.adapters.plotting import Theme, canvas
 from estimators.arrays import ArrayLike, FloatArray, InputError
 from estimators.gnss.fix import Fix, SatelliteStatus
-
-PositionPicture = Literal["sky", "residuals"]
 
 _MARKS: dict[SatelliteStatus, str] = {"used": "o", "excluded": "X", "untestable": "o"}
 _TITLES: dict[SatelliteStatus, str] = {

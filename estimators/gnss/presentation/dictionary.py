@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from estimators.notices import notice_to_dict
@@ -122,8 +121,3 @@ def fix_to_feature(fix: Fix) -> dict[str, Any]:
             "excluded": list(fix.excluded),
         },
     }
-
-
-def to_feature_collection(features: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """GeoJSON feature collection (RFC 7946)."""
-    return {"type": "FeatureCollection", "features": list(features)}
