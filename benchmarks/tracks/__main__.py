@@ -28,7 +28,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Command line."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.tracks", description=__doc__)
     parser.add_argument("--seeds", type=int, default=20, help="tracks of a type for auto (default 20)")
-    parser.add_argument("--other-seeds", type=int, default=3, help="the same for other methods (default 3)")
+    parser.add_argument("--other-seeds", type=int, default=2, help="the same for other methods (default 2)")
     parser.add_argument(
         "--only", default="", help="types whose name, group or split holds this text (default: all)"
     )

@@ -18,7 +18,7 @@ from estimators.trajectories.parameters import TrackParameters
 LAG = 32
 """Fixes after which the probability of a fix is settled."""
 _HOPELESS = 18.0
-"""Less likely branches hardly ever come back, and cost time; from 15 on the answers are the same."""
+"""Less likely branches hardly ever come back, and cost time. At 15 hard tracks lose .03 of F1."""
 _PIECE = 1 << 14
 """Fixes that the beam takes in at once; the labels do not depend on it."""
 _LONG = 1 << 17
