@@ -44,7 +44,7 @@ class Answer:
     ) -> None:
         self._course, self._rows = course, course.rows
         self._ledger, self._method, self._options, self._level = ledger, method, options, level
-        self._survey: Survey = survey(course)
+        self._survey: Survey = survey(course, ledger.row_step_s)
         self._journey, self._raw = Journey(), Way(0.0)
         self._gatherer = StretchGatherer(self._rows.t, self._survey.moving)
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from estimators.arrays import FloatArray
 from estimators.notices import Notice, NoticeCode, notice
 from estimators.trajectories.measured_rows import MeasuredRows
 from estimators.trajectories.parameters import TrackParameters
@@ -29,14 +30,15 @@ class Ledger:
     measured : MeasuredRows
     unit, measured_unit : float
         Median radius that the receiver reports: of all rows, and of those that measure something; 1 without.
-    step_s : float
-        Median time between two fixes.
+    step_s, row_step_s : float
+        Median time between two fixes, and between two rows; 0 of one.
     """
 
     measured: MeasuredRows
     unit: float
     measured_unit: float
     step_s: float
+    row_step_s: float
 
     def notices(self, parameters: TrackParameters, found: Survey, rows: Rows) -> tuple[Notice, ...]:
         """Say what is worth knowing."""
@@ -78,6 +80,10 @@ def open_ledger(rows: Rows, measured: MeasuredRows) -> Ledger:
     if rows.reported is not None:
         unit = float(np.median(rows.reported))
         measured_unit = float(np.median(rows.reported[rows.measures]))
-    times = rows.t if rows.measures.all() else rows.t[rows.measures]
-    step = float(np.median(np.diff(times), overwrite_input=True)) if times.size > 1 else 0.0
-    return Ledger(measured, unit, measured_unit, step)
+    row_step = _median_step(rows.t)
+    step = row_step if rows.measures.all() else _median_step(rows.t[rows.measures])
+    return Ledger(measured, unit, measured_unit, step, row_step)
+
+
+def _median_step(t: FloatArray) -> float:
+    return float(np.median(np.diff(t), overwrite_input=True)) if t.size > 1 else 0.0

@@ -47,8 +47,8 @@ class Survey:
     gaps: int
 
 
-def survey(course: Course) -> Survey:
-    """Look at the whole track once."""
+def survey(course: Course, typical_step_s: float) -> Survey:
+    """Look at the whole track once; a gap is long against the typical step."""
     rows = course.rows
     m = rows.t.size
     half = half_span(course.typical_sigma())
@@ -63,7 +63,7 @@ def survey(course: Course) -> Survey:
         kind = course.labels[part] % LEVEL_STRIDE
         codes[part][kind == SPIKE] = FixReason.spike
         codes[part][np.isin(kind, (*BURSTS, ADRIFT))] = FixReason.burst
-    gaps = find_gaps(rows.t, course.labelled.parameters)
+    gaps = find_gaps(rows.t, typical_step_s, course.labelled.parameters)
     _mark_whole(codes, rows, off, gaps)
     inlier = (codes == FixReason.ok) | (codes == FixReason.gap_edge)
     # A duplicate is what its twin is, and so is its label; its reason stays.
@@ -76,16 +76,15 @@ def survey(course: Course) -> Survey:
     return Survey(codes, inlier, good, without_short(rows.t, moving, half), len(gaps))
 
 
-def find_gaps(t: FloatArray, parameters: TrackParameters) -> list[int]:
+def find_gaps(t: FloatArray, typical_s: float, parameters: TrackParameters) -> list[int]:
     """Places after which there is a gap."""
     if t.size <= _FEW:
         return []
-    typical = float(np.median(np.diff(t), overwrite_input=True))
     found: list[int] = []
     for first in range(0, t.size - 1, BLOCK):
         steps = np.diff(t[first : first + BLOCK + 1])
         hidden = np.sqrt(parameters.manoeuvre * steps**3 / 3.0)
-        found += (first + np.flatnonzero((steps > _GAP_STEPS * typical) & (hidden > _GAP_M))).tolist()
+        found += (first + np.flatnonzero((steps > _GAP_STEPS * typical_s) & (hidden > _GAP_M))).tolist()
     return found
 
 
