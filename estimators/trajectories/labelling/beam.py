@@ -19,7 +19,7 @@ import numpy as np
 from numba import types
 
 from estimators.arrays import CodeArray, FloatArray, IntArray
-from estimators.kernels import kernel, ro
+from estimators.kernels import kernel
 from estimators.trajectories.labelling.branches import BRANCHES
 from estimators.trajectories.labelling.modes import (
     ADRIFT,
@@ -40,6 +40,7 @@ from estimators.trajectories.labelling.modes import (
 from estimators.trajectories.labelling.priors import PRIORS, fill_prior, log_first
 from estimators.trajectories.labelling.ranking import pile, take_top
 from estimators.trajectories.labelling.settling import likeliest, settle, share_of_good, trace
+from estimators.trajectories.labelling.signature import TRACK
 from estimators.trajectories.labelling.state import (
     COLUMNS,
     WITHOUT_PATH,
@@ -78,14 +79,7 @@ USED, SEEN, OPEN = range(3)
 
 @kernel(
     types.float64(
-        ro(types.float64),
-        ro(types.float64, 2),
-        ro(types.float64),
-        ro(types.float64, 2),
-        ro(types.float64),
-        types.float64,
-        types.float64,
-        ro(types.float64),
+        *TRACK,
         types.int64,
         types.int64,
         types.float64,

@@ -31,6 +31,7 @@ from estimators.trajectories.labelling.modes import (
     THROWN,
 )
 from estimators.trajectories.labelling.priors import PRIORS, fill_prior, log_first
+from estimators.trajectories.labelling.signature import TRACK
 from estimators.trajectories.labelling.state import COLUMNS
 from estimators.trajectories.labelling.steps import begin, branch, follow, look_ahead
 from estimators.trajectories.labelling.velocity import take_velocity
@@ -41,14 +42,7 @@ IMPOSSIBLE = -1e6
 
 @kernel(
     types.float64(
-        ro(types.float64),
-        ro(types.float64, 2),
-        ro(types.float64),
-        ro(types.float64, 2),
-        ro(types.float64),
-        types.float64,
-        types.float64,
-        ro(types.float64),
+        *TRACK,
         ro(types.uint8),
         types.uint8[::1],
     )

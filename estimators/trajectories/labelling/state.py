@@ -47,9 +47,17 @@ def update(s: FloatArray, h: int, east: float, north: float, variance: float) ->
     g0 = s[h, PP] + s[h, PB]
     g1 = s[h, PV] + s[h, VB]
     g2 = s[h, PB] + s[h, BB]
-    total = max(g0 + g2, 0.0) + variance
+    off_east, off_north = east - s[h, EAST] - s[h, EAST_BIAS], north - s[h, NORTH] - s[h, NORTH_BIAS]
+    correct(s, h, g0, g1, g2, max(g0 + g2, 0.0) + variance, off_east, off_north)
+
+
+@arithmetic
+def correct(
+    s: FloatArray, h: int, g0: float, g1: float, g2: float, total: float, off_east: float, off_north: float
+) -> None:
+    """Take in a measurement that is off so far; ``g`` is its covariance with position, velocity and bias."""
     for axis in range(2):
-        off = ((east if axis == 0 else north) - s[h, EAST + axis] - s[h, EAST_BIAS + axis]) / total
+        off = (off_east if axis == 0 else off_north) / total
         s[h, EAST + axis] += g0 * off
         s[h, EAST_MPS + axis] += g1 * off
         s[h, EAST_BIAS + axis] += g2 * off

@@ -37,6 +37,7 @@ from estimators.trajectories.labelling.modes import (
     hurry,
 )
 from estimators.trajectories.labelling.priors import R_GROWTH, R_WALK
+from estimators.trajectories.labelling.signature import TRACK
 from estimators.trajectories.labelling.state import (
     BB,
     COLUMNS,
@@ -66,14 +67,7 @@ IN_BURST, IN_HURRY = 1, 2
 
 @kernel(
     types.int64(
-        ro(types.float64),
-        ro(types.float64, 2),
-        ro(types.float64),
-        ro(types.float64, 2),
-        ro(types.float64),
-        types.float64,
-        types.float64,
-        ro(types.float64),
+        *TRACK,
         ro(types.uint8),
         types.float64[:, ::1],
         types.int64,
